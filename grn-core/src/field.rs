@@ -1,0 +1,204 @@
+//! Targets and obstacles → the morphogens x1 and x2 at a point, with their gradients (model page, section 2).
+
+use crate::geometry::{Point, Vector};
+use crate::scalar::Scalar;
+
+/// How a morphogen's concentration falls with distance; u is the distance in widths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Kernel {
+    /// κ(u) = e^(-u²/2)
+    Gaussian = 1,
+    /// κ(u) = e^-u
+    Exponential = 2,
+}
+
+impl Kernel {
+    /// The kernel with this numeric code, as in blobs.
+    pub const fn from_code(code: u8) -> Option<Kernel> {
+        match code {
+            1 => Some(Kernel::Gaussian),
+            2 => Some(Kernel::Exponential),
+            _ => None,
+        }
+    }
+
+    /// The name users type in a scenario.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kernel::Gaussian => "gaussian",
+            Kernel::Exponential => "exponential",
+        }
+    }
+
+    /// κ(u), in [0, 1]; a negative u is taken as 0.
+    pub fn concentration<S: Scalar>(self, u: S) -> S {
+        match self {
+            Kernel::Gaussian => (u * u).halved(1).exp_neg(),
+            Kernel::Exponential => u.exp_neg(),
+        }
+    }
+
+    /// dκ/du at u, given κ(u).
+    fn slope<S: Scalar>(self, u: S, concentration: S) -> S {
+        match self {
+            Kernel::Gaussian => -(u * concentration),
+            Kernel::Exponential => -concentration,
+        }
+    }
+}
+
+/// The obstacle boundary nearest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest<S> {
+    /// Distance in metres, 0 inside the obstacle.
+    pub distance: S,
+    /// Unit vector from the obstacle to the point; zero inside or on it.
+    pub away: Vector<S>,
+}
+
+/// What the field needs to know of obstacles.
+pub trait Obstacles<S> {
+    /// The obstacle nearest to `point`, if there is any.
+    fn nearest(&self, point: Point<S>) -> Option<Nearest<S>>;
+}
+
+/// Obstacles known as single points on their boundary.
+impl<S: Scalar> Obstacles<S> for [Point<S>] {
+    fn nearest(&self, point: Point<S>) -> Option<Nearest<S>> {
+        let offsets = self.iter().map(|&obstacle| point - obstacle);
+        let (distance, offset) = offsets
+            .map(|offset| (offset.length(), offset))
+            .reduce(|best, next| if next.0 < best.0 { next } else { best })?;
+        Some(Nearest { distance, away: offset.direction().unwrap_or(Vector::ZERO) })
+    }
+}
+
+/// The morphogens at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Morphogens<S> {
+    /// Σ over targets of κ(d / σ_t); a sum, not clipped.
+    pub x1: S,
+    /// The largest κ(d / σ_o) over obstacles; 1 inside one, 0 without any.
+    pub x2: S,
+    /// ∇x1, per metre.
+    pub x1_gradient: Vector<S>,
+    /// ∇x2, per metre.
+    pub x2_gradient: Vector<S>,
+}
+
+/// The rule that turns a world into morphogens: a kernel and two widths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field<S> {
+    kernel: Kernel,
+    target_width: S,
+    per_target_width: S,
+    per_obstacle_width: S,
+}
+
+impl<S: Scalar> Field<S> {
+    /// A field with widths σ_t and σ_o in metres, both positive.
+    pub fn new(kernel: Kernel, target_width: S, obstacle_width: S) -> Self {
+        Field {
+            kernel,
+            target_width,
+            per_target_width: S::ONE / target_width,
+            per_obstacle_width: S::ONE / obstacle_width,
+        }
+    }
+
+    /// σ_t in metres.
+    pub fn target_width(&self) -> S {
+        self.target_width
+    }
+
+    /// κ(d / σ_t): what one target at distance d (metres) contributes to x1.
+    pub fn target_concentration(&self, distance: S) -> S {
+        self.kernel.concentration(distance * self.per_target_width)
+    }
+
+    /// κ(d / σ_o): x2 at distance d (metres) from the nearest obstacle.
+    pub fn obstacle_concentration(&self, distance: S) -> S {
+        self.kernel.concentration(distance * self.per_obstacle_width)
+    }
+
+    /// x1, x2 and their gradients at `point`.
+    pub fn at<O: Obstacles<S> + ?Sized>(
+        &self,
+        point: Point<S>,
+        targets: impl IntoIterator<Item = Point<S>>,
+        obstacles: &O,
+    ) -> Morphogens<S> {
+        let mut x1 = S::ZERO;
+        let mut x1_gradient = Vector::ZERO;
+        for target in targets {
+            let offset = point - target;
+            let distance = offset.length();
+            let (concentration, slope) = self.profile(distance, self.per_target_width);
+            x1 = x1 + concentration;
+            x1_gradient = x1_gradient + offset.direction().unwrap_or(Vector::ZERO) * slope;
+        }
+        let (x2, x2_gradient) = match obstacles.nearest(point) {
+            None => (S::ZERO, Vector::ZERO),
+            Some(nearest) => {
+                let (concentration, slope) = self.profile(nearest.distance, self.per_obstacle_width);
+                (concentration, nearest.away * slope)
+            }
+        };
+        Morphogens { x1, x2, x1_gradient, x2_gradient }
+    }
+
+    /// κ(d/σ) and its derivative per metre.
+    fn profile(&self, distance: S, per_width: S) -> (S, S) {
+        let u = distance * per_width;
+        let concentration = self.kernel.concentration(u);
+        (concentration, self.kernel.slope(u, concentration) * per_width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Q8_24;
+
+    const TARGETS: [Point<f64>; 2] = [Vector::new(0.0, 0.0), Vector::new(1.0, 0.5)];
+    const OBSTACLES: [Point<f64>; 2] = [Vector::new(2.0, 2.0), Vector::new(-1.0, -1.5)];
+
+    #[test]
+    fn gradients_are_derivatives() {
+        for kernel in [Kernel::Gaussian, Kernel::Exponential] {
+            let field = Field::new(kernel, 1.5, 0.9);
+            let at = |x, y| field.at(Vector::new(x, y), TARGETS, &OBSTACLES[..]);
+            let (x, y, h) = (0.7, -0.4, 1e-6);
+            let here = at(x, y);
+            let east = (at(x + h, y).x1 - at(x - h, y).x1) / (2.0 * h);
+            let north = (at(x, y + h).x2 - at(x, y - h).x2) / (2.0 * h);
+            assert!((here.x1_gradient.x - east).abs() < 1e-8, "{kernel:?}");
+            assert!((here.x2_gradient.y - north).abs() < 1e-8, "{kernel:?}");
+        }
+    }
+
+    #[test]
+    fn x1_sums_and_x2_takes_the_largest() {
+        let field = Field::new(Kernel::Gaussian, 1.5, 0.9);
+        let there = field.at(Vector::new(0.0, 0.0), [Vector::ZERO, Vector::ZERO], &OBSTACLES[..]);
+        assert_eq!(there.x1, 2.0);
+        let d = libm::sqrt(1.0 + 2.25);
+        assert!((there.x2 - libm::exp(-(d / 0.9) * (d / 0.9) / 2.0)).abs() < 1e-15);
+        let none: &[Point<f64>] = &[];
+        let empty = field.at(Vector::ZERO, [], none);
+        assert_eq!((empty.x1, empty.x2), (0.0, 0.0));
+    }
+
+    #[test]
+    fn fixed_point_stays_close_on_a_tenth_scale() {
+        let exact = Field::new(Kernel::Gaussian, 0.15, 0.09);
+        let fixed = Field::new(Kernel::Gaussian, Q8_24::from_f64(0.15), Q8_24::from_f64(0.09));
+        let q = |v: Vector<f64>| Vector::new(Q8_24::from_f64(v.x), Q8_24::from_f64(v.y));
+        let (p, t, o) = (Vector::new(0.11, 0.05), Vector::new(0.0, 0.02), Vector::new(0.2, 0.1));
+        let a = exact.at(p, [t], &[o][..]);
+        let b = fixed.at(q(p), [q(t)], &[q(o)][..]);
+        assert!((a.x1 - b.x1.to_f64()).abs() < 1e-6 && (a.x2 - b.x2.to_f64()).abs() < 1e-6);
+        assert!((a.x2_gradient - Vector::new(b.x2_gradient.x.to_f64(), b.x2_gradient.y.to_f64())).length() < 1e-4);
+    }
+}

@@ -1,0 +1,154 @@
+//! The ten network motifs: how the inputs of a gene regulate its expression.
+
+use crate::scalar::Arithmetic;
+
+/// The most inputs a gene can have (OR and NOR).
+pub const MAX_INPUTS: usize = 4;
+
+/// A network motif (Fan et al. 2019, section IV-A). The discriminant is its opcode in a blob and never changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Motif {
+    /// σ(a)
+    Pos = 1,
+    /// 1 - σ(a)
+    Neg = 2,
+    /// σ(a·b)
+    And = 3,
+    /// 1 - σ(a·b)
+    Nand = 4,
+    /// σ(a + b), of two to four inputs
+    Or = 5,
+    /// 1 - σ(a + b), of two to four inputs
+    Nor = 6,
+    /// σ(a·(1-b))
+    Andn = 7,
+    /// σ(a + (1-b))
+    Orn = 8,
+    /// σ(a·(1-b)) + σ((1-a)·b), both with one θ; may exceed 1
+    Xor = 9,
+    /// 1 - σ(a·(1-b)) - σ((1-a)·b), both with one θ; may be negative
+    Xnor = 10,
+}
+
+impl Motif {
+    /// All ten, in the order of their opcodes.
+    pub const ALL: [Motif; 10] = [
+        Motif::Pos,
+        Motif::Neg,
+        Motif::And,
+        Motif::Nand,
+        Motif::Or,
+        Motif::Nor,
+        Motif::Andn,
+        Motif::Orn,
+        Motif::Xor,
+        Motif::Xnor,
+    ];
+
+    /// The numeric opcode, 1 to 10.
+    pub const fn opcode(self) -> u8 {
+        self as u8
+    }
+
+    /// The motif with this opcode, if there is one.
+    pub fn from_opcode(opcode: u8) -> Option<Motif> {
+        Motif::ALL.into_iter().find(|motif| motif.opcode() == opcode)
+    }
+
+    /// The name in capitals, as in the paper.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Motif::Pos => "POS",
+            Motif::Neg => "NEG",
+            Motif::And => "AND",
+            Motif::Nand => "NAND",
+            Motif::Or => "OR",
+            Motif::Nor => "NOR",
+            Motif::Andn => "ANDN",
+            Motif::Orn => "ORN",
+            Motif::Xor => "XOR",
+            Motif::Xnor => "XNOR",
+        }
+    }
+
+    /// How many inputs a gene with this motif may have.
+    pub const fn arity(self) -> core::ops::RangeInclusive<usize> {
+        match self {
+            Motif::Pos | Motif::Neg => 1..=1,
+            Motif::Or | Motif::Nor => 2..=MAX_INPUTS,
+            _ => 2..=2,
+        }
+    }
+
+    /// The regulation R of dy/dt = -y + R, with σ(x) = 1 / (1 + e^(-k(x - θ))).
+    ///
+    /// `inputs` holds as many expression levels as [`Motif::arity`] allows; a missing one counts as 0.
+    pub fn regulation<A: Arithmetic>(self, inputs: &[A], theta: A, k: A) -> A {
+        let sig = |x: A| ((x - theta) * k).logistic();
+        let mut levels = inputs.iter().copied();
+        let a = levels.next().unwrap_or(A::ZERO);
+        let b = levels.next().unwrap_or(A::ZERO);
+        let sum = || levels.fold(a + b, |sum, level| sum + level);
+        match self {
+            Motif::Pos => sig(a),
+            Motif::Neg => A::ONE - sig(a),
+            Motif::And => sig(a * b),
+            Motif::Nand => A::ONE - sig(a * b),
+            Motif::Or => sig(sum()),
+            Motif::Nor => A::ONE - sig(sum()),
+            Motif::Andn => sig(a * (A::ONE - b)),
+            Motif::Orn => sig(a + (A::ONE - b)),
+            Motif::Xor => sig(a * (A::ONE - b)) + sig((A::ONE - a) * b),
+            Motif::Xnor => A::ONE - sig(a * (A::ONE - b)) - sig((A::ONE - a) * b),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_motif_follows_its_equation() {
+        let (a, b, c, theta, k) = (0.7_f64, 0.2, 0.4, 0.35, 2.0);
+        let sig = |x: f64| 1.0 / (1.0 + libm::exp(-k * (x - theta)));
+        let expected = [
+            (Motif::Pos, sig(0.7)),
+            (Motif::Neg, 1.0 - sig(0.7)),
+            (Motif::And, sig(0.14)),
+            (Motif::Nand, 1.0 - sig(0.14)),
+            (Motif::Or, sig(1.3)),
+            (Motif::Nor, 1.0 - sig(1.3)),
+            (Motif::Andn, sig(0.56)),
+            (Motif::Orn, sig(1.5)),
+            (Motif::Xor, sig(0.56) + sig(0.06)),
+            (Motif::Xnor, 1.0 - sig(0.56) - sig(0.06)),
+        ];
+        for (motif, value) in expected {
+            let inputs = &[a, b, c][..(*motif.arity().end()).min(3)];
+            let got = motif.regulation(inputs, theta, k);
+            assert!((got - value).abs() < 1e-12, "{}: {got} against {value}", motif.name());
+        }
+    }
+
+    #[test]
+    fn opcodes_are_frozen() {
+        let codes: std::vec::Vec<_> = Motif::ALL.iter().map(|m| (m.name(), m.opcode())).collect();
+        let frozen = [
+            ("POS", 1),
+            ("NEG", 2),
+            ("AND", 3),
+            ("NAND", 4),
+            ("OR", 5),
+            ("NOR", 6),
+            ("ANDN", 7),
+            ("ORN", 8),
+            ("XOR", 9),
+            ("XNOR", 10),
+        ];
+        assert_eq!(codes, frozen);
+        assert!(Motif::ALL.iter().all(|&m| Motif::from_opcode(m.opcode()) == Some(m)));
+        assert!(Motif::from_opcode(0).is_none() && Motif::from_opcode(11).is_none());
+    }
+}

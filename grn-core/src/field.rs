@@ -39,38 +39,38 @@ impl Kernel {
         }
     }
 
-    /// dκ/du at u, given κ(u).
-    fn slope<S: Scalar>(self, u: S, concentration: S) -> S {
+    /// κ at `offset` from the source, and its gradient per metre; `per_width` is 1/σ.
+    fn profile<S: Scalar>(self, offset: Vector<S>, per_width: S) -> (S, Vector<S>) {
+        let u = offset * per_width;
         match self {
-            Kernel::Gaussian => -(u * concentration),
-            Kernel::Exponential => -concentration,
+            Kernel::Gaussian => {
+                let concentration = u.dot(u).halved(1).exp_neg();
+                (concentration, u * -(concentration * per_width))
+            }
+            Kernel::Exponential => {
+                let concentration = u.length().exp_neg();
+                (concentration, u.direction().unwrap_or(Vector::ZERO) * -(concentration * per_width))
+            }
         }
     }
 }
 
-/// The obstacle boundary nearest to a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest<S> {
-    /// Distance in metres, 0 inside the obstacle.
-    pub distance: S,
-    /// Unit vector from the obstacle to the point; zero inside or on it.
-    pub away: Vector<S>,
-}
-
 /// What the field needs to know of obstacles.
 pub trait Obstacles<S> {
-    /// The obstacle nearest to `point`, if there is any.
-    fn nearest(&self, point: Point<S>) -> Option<Nearest<S>>;
+    /// The vector to `point` from the nearest point of any obstacle, metres; zero inside an obstacle, `None` without any.
+    fn offset_from_nearest(&self, point: Point<S>) -> Option<Vector<S>>;
 }
 
 /// Obstacles known as single points on their boundary.
 impl<S: Scalar> Obstacles<S> for [Point<S>] {
-    fn nearest(&self, point: Point<S>) -> Option<Nearest<S>> {
+    fn offset_from_nearest(&self, point: Point<S>) -> Option<Vector<S>> {
+        // An eighth of each offset is squared: in Q8.24 squares of up to 90 m fit.
+        let eighth_squared = |v: Vector<S>| v.x.halved(3) * v.x.halved(3) + v.y.halved(3) * v.y.halved(3);
         let offsets = self.iter().map(|&obstacle| point - obstacle);
-        let (distance, offset) = offsets
-            .map(|offset| (offset.length(), offset))
+        let nearest = offsets
+            .map(|offset| (eighth_squared(offset), offset))
             .reduce(|best, next| if next.0 < best.0 { next } else { best })?;
-        Some(Nearest { distance, away: offset.direction().unwrap_or(Vector::ZERO) })
+        Some(nearest.1)
     }
 }
 
@@ -132,27 +132,15 @@ impl<S: Scalar> Field<S> {
         let mut x1 = S::ZERO;
         let mut x1_gradient = Vector::ZERO;
         for target in targets {
-            let offset = point - target;
-            let distance = offset.length();
-            let (concentration, slope) = self.profile(distance, self.per_target_width);
+            let (concentration, gradient) = self.kernel.profile(point - target, self.per_target_width);
             x1 = x1 + concentration;
-            x1_gradient = x1_gradient + offset.direction().unwrap_or(Vector::ZERO) * slope;
+            x1_gradient = x1_gradient + gradient;
         }
-        let (x2, x2_gradient) = match obstacles.nearest(point) {
+        let (x2, x2_gradient) = match obstacles.offset_from_nearest(point) {
             None => (S::ZERO, Vector::ZERO),
-            Some(nearest) => {
-                let (concentration, slope) = self.profile(nearest.distance, self.per_obstacle_width);
-                (concentration, nearest.away * slope)
-            }
+            Some(offset) => self.kernel.profile(offset, self.per_obstacle_width),
         };
         Morphogens { x1, x2, x1_gradient, x2_gradient }
-    }
-
-    /// κ(d/σ) and its derivative per metre.
-    fn profile(&self, distance: S, per_width: S) -> (S, S) {
-        let u = distance * per_width;
-        let concentration = self.kernel.concentration(u);
-        (concentration, self.kernel.slope(u, concentration) * per_width)
     }
 }
 

@@ -12,9 +12,9 @@ pub const MAX_REPORTED_OBSTACLES: usize = 4;
 pub struct TargetReport {
     /// Which target.
     pub target: u8,
-    /// Where it was when last seen.
+    /// Where the sender expects it at the time of sending.
     pub position: Millimetres,
-    /// Its velocity then, millimetres per second, (east, north).
+    /// Its velocity, millimetres per second, (east, north).
     pub velocity: [i8; 2],
     /// Ticks since it was seen, over all relays; 255 means at least that.
     pub age: u8,

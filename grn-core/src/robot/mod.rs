@@ -3,9 +3,14 @@
 //! Everything that crosses the controller's border is made of integers in stated units, so that a percept can be
 //! recorded, sent over a wire and replayed bit for bit, and a robot without a floating-point unit needs none.
 
+pub mod controller;
+mod drive;
 pub mod epuck2;
+mod knowledge;
 pub mod message;
+mod motion;
 pub mod percept;
 
-pub use message::{Message, TargetReport};
+pub use controller::{Controller, LoadError};
+pub use message::{Message, ObstacleReport, TargetReport};
 pub use percept::{Command, Millimetres, Percept, Sighting};

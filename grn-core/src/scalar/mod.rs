@@ -46,8 +46,10 @@ pub trait Scalar:
     fn to_f32(self) -> f32;
     /// Exact for every implementation.
     fn to_f64(self) -> f64;
-    /// The nearest integer, halves away from zero, saturating; NaN gives 0.
-    fn round_to_i32(self) -> i32;
+    /// The integer nearest to `self` · `factor`, halves away from zero, saturating; NaN gives 0.
+    ///
+    /// The product may exceed the type's own range: `metres.times_to_i32(1000)` is a length in millimetres.
+    fn times_to_i32(self, factor: i32) -> i32;
     /// e^-u of `self` = u ≥ 0, in [0, 1]; a negative u is taken as 0.
     #[must_use]
     fn exp_neg(self) -> Self;
@@ -122,8 +124,8 @@ impl Scalar for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
-    fn round_to_i32(self) -> i32 {
-        libm::roundf(self) as i32
+    fn times_to_i32(self, factor: i32) -> i32 {
+        libm::roundf(self * factor as f32) as i32
     }
     fn exp_neg(self) -> f32 {
         exp_f32(-self.max(0.0))
@@ -168,8 +170,8 @@ impl Scalar for f64 {
     fn to_f64(self) -> f64 {
         self
     }
-    fn round_to_i32(self) -> i32 {
-        libm::round(self) as i32
+    fn times_to_i32(self, factor: i32) -> i32 {
+        libm::round(self * f64::from(factor)) as i32
     }
     fn exp_neg(self) -> f64 {
         libm::exp(-self.max(0.0))

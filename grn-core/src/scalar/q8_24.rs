@@ -165,9 +165,11 @@ impl Scalar for Q8_24 {
     fn to_f64(self) -> f64 {
         f64::from(self.to_bits()) / f64::from(ONE_BITS)
     }
-    fn round_to_i32(self) -> i32 {
-        let magnitude = (self.to_bits().unsigned_abs() + (1 << (FRACTION_BITS - 1))) >> FRACTION_BITS;
-        if self.to_bits() < 0 { -(magnitude as i32) } else { magnitude as i32 }
+    fn times_to_i32(self, factor: i32) -> i32 {
+        let product = i64::from(self.to_bits()) * i64::from(factor);
+        let magnitude = (product.unsigned_abs() + HALF_ULP.unsigned_abs()) >> FRACTION_BITS;
+        let magnitude = i32::try_from(magnitude).unwrap_or(i32::MAX);
+        if product < 0 { -magnitude } else { magnitude }
     }
     /// Maximum error 2^-23 (tested).
     ///
@@ -265,7 +267,9 @@ mod tests {
         assert_eq!(Q8_24::from_bits(3).halved(1).to_bits(), 2);
         assert_eq!(Q8_24::from_bits(-3).halved(1).to_bits(), -1);
         assert_eq!(Q8_24::from_f32(f32::NAN), Q8_24::ZERO);
-        assert_eq!(Q8_24::from_f32(-2.5).round_to_i32(), -3);
+        assert_eq!(Q8_24::from_f32(-2.5).times_to_i32(1), -3);
+        assert_eq!(Q8_24::from_f32(1.1).times_to_i32(1000), 1100);
+        assert_eq!(big.times_to_i32(i32::MIN), -i32::MAX);
         assert_eq!(Q8_24::from_f32(3.0).hypot(Q8_24::from_f32(-4.0)), Q8_24::from_f32(5.0));
         assert_eq!(Q8_24::from_bits(i32::MIN).hypot(Q8_24::from_bits(i32::MIN)).to_bits(), i32::MAX);
         assert_eq!(Q8_24::from_f32(2.25).sqrt(), Q8_24::from_f32(1.5));

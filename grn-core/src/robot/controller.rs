@@ -1,0 +1,157 @@
+//! The controller: one tick from percept to command.
+
+use super::drive::{Drive, heading, reflex};
+use super::epuck2::TICKS_PER_SECOND;
+use super::knowledge::Knowledge;
+use super::message::Message;
+use super::motion::{Bearing, Motion};
+use super::percept::{Command, Millimetres, Percept};
+use crate::blob::{Blob, Identity};
+use crate::dynamics::{Expression, Step};
+use crate::field::Field;
+use crate::geometry::{Point, Vector};
+use crate::network::{DEFAULT_GENES, Network};
+use crate::pattern::{NoPattern, Pattern};
+use crate::scalar::Scalar;
+use core::fmt;
+
+/// A robot speaks every so many ticks, each in its own turn.
+const BROADCAST_PERIOD: u32 = 4;
+/// The most RK4 steps in one tick.
+const MAX_STEPS_PER_TICK: f32 = 64.0;
+
+/// Why a valid blob cannot drive this robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The model does not tell targets from empty space.
+    NoPattern(NoPattern),
+    /// The pattern around a lone target has no edge within 8 σ_t.
+    NoRing,
+    /// Time scale, tick and integration step do not give 1 to 64 whole RK4 steps in a tick.
+    StepsPerTick(f32),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            LoadError::NoPattern(error) => error.fmt(f),
+            LoadError::NoRing => write!(f, "the model's pattern does not close around a lone target"),
+            LoadError::StepsPerTick(steps) => write!(
+                f,
+                "time_scale and step give {steps} RK4 steps in a tick of 1/{TICKS_PER_SECOND} s; choose them so that it \
+                 is a whole number from 1 to {MAX_STEPS_PER_TICK}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for LoadError {}
+
+/// A controller running on one robot.
+///
+/// Equal blobs and equal percepts give equal commands, bit for bit, on every machine.
+#[derive(Clone, Debug)]
+pub struct Controller<S, const N: usize = DEFAULT_GENES> {
+    robot: u8,
+    identity: Identity,
+    network: Network<S, N>,
+    pattern: Pattern<S>,
+    field: Field<S>,
+    step: Step,
+    steps_per_tick: u8,
+    expression: Expression<S, N>,
+    knowledge: Knowledge<S>,
+    motion: Motion<S>,
+    drive: Drive<S>,
+    reflex: S,
+    tick: u32,
+}
+
+impl<S: Scalar, const N: usize> Controller<S, N> {
+    /// Loads a blob for robot number `robot`, all genes silent and nothing known.
+    ///
+    /// # Errors
+    /// See [`LoadError`].
+    pub fn new(blob: &Blob<N>, robot: u8) -> Result<Self, LoadError> {
+        let network = blob.network.cast();
+        let pattern = Pattern::of(&network, S::from_f32(blob.level_fraction)).map_err(LoadError::NoPattern)?;
+        let field = blob.field.field(blob.scale);
+        let ring_radius = pattern.free_space_radius(&network, &field).ok_or(LoadError::NoRing)?;
+        Ok(Controller {
+            robot,
+            identity: blob.identity(),
+            network,
+            pattern,
+            field,
+            step: blob.step,
+            steps_per_tick: steps_per_tick(blob.time_scale, blob.step)?,
+            expression: Expression::silent(),
+            knowledge: Knowledge::new(),
+            motion: Motion::new(&blob.gains, ring_radius, S::from_ratio(1, i32::from(TICKS_PER_SECOND))),
+            drive: Drive::new(S::from_f32(blob.gains.turn)),
+            reflex: S::from_f32(blob.gains.cruise),
+            tick: 0,
+        })
+    }
+
+    /// The identity of the blob that runs.
+    pub fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// The level of the pattern morphogen M at the robot, as its genes express it now.
+    pub fn morphogen(&self) -> S {
+        self.expression.morphogen(&self.network)
+    }
+
+    /// One control tick, every 1/32 s: perceive, express genes, move.
+    pub fn tick(&mut self, percept: &Percept) -> Command {
+        self.tick = self.tick.wrapping_add(1);
+        let [east, north] = percept.position.map(|micrometres| S::from_ratio(micrometres, 1_000_000));
+        let here = Vector::new(east, north);
+        self.knowledge.update(percept, here);
+        let heading = heading(percept.heading);
+        let wanted = self.wanted_velocity(here) + reflex(&percept.proximity, heading, self.reflex);
+        let (left, right) = self.drive.wheels(wanted, heading);
+        Command { left, right, broadcast: self.broadcast(percept) }
+    }
+
+    fn wanted_velocity(&mut self, here: Point<S>) -> Vector<S> {
+        let targets = self.knowledge.targets();
+        let distance = |position: Point<S>| (position - here).length();
+        let nearest = targets.iter().reduce(|a, b| if distance(b.position) < distance(a.position) { b } else { a });
+        let Some(&nearest) = nearest else { return Vector::ZERO };
+        let known = targets.iter().map(|target| target.position);
+        let morphogens = self.field.at(here, known, self.knowledge.obstacles());
+        for _ in 0..self.steps_per_tick {
+            self.expression.advance(&self.network, morphogens.x1, morphogens.x2, self.step);
+        }
+        let bearing = Bearing {
+            error: self.pattern.error(self.expression.morphogen(&self.network)),
+            gradient: self.pattern.error_gradient(&self.network, &morphogens),
+        };
+        self.motion.velocity(here, &bearing, &nearest, self.knowledge.neighbours())
+    }
+
+    fn broadcast(&self, percept: &Percept) -> Option<Message> {
+        let turn = self.tick.wrapping_add(u32::from(self.robot));
+        if !turn.is_multiple_of(BROADCAST_PERIOD) {
+            return None;
+        }
+        let (target, obstacles) = self.knowledge.report(turn / BROADCAST_PERIOD, percept);
+        let millimetre = |micrometres: i32| (micrometres / 1000).clamp(-32_767, 32_767) as i16;
+        let [x, y] = percept.position.map(millimetre);
+        Some(Message { sender: self.robot, position: Millimetres { x, y }, target, obstacles })
+    }
+}
+
+fn steps_per_tick(time_scale: f32, step: Step) -> Result<u8, LoadError> {
+    let steps = time_scale / f32::from(TICKS_PER_SECOND) / step.seconds::<f32>();
+    let whole = steps as u8;
+    if (1.0..=MAX_STEPS_PER_TICK).contains(&steps) && f32::from(whole) == steps {
+        Ok(whole)
+    } else {
+        Err(LoadError::StepsPerTick(steps))
+    }
+}

@@ -3,6 +3,7 @@
 use crate::network::Network;
 use crate::scalar::{Arithmetic, Dual, Scalar};
 use core::fmt;
+use heapless::Vec;
 
 impl<S: Scalar, const N: usize> Network<S, N> {
     /// The level of M when inputs are held constant: one pass in topological order with y = R.
@@ -16,14 +17,12 @@ impl<S: Scalar, const N: usize> Network<S, N> {
     }
 
     fn settle<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
-        let mut morphogen = A::ZERO;
-        self.regulate(x, &mut [A::ZERO; N], |levels, gene, regulation| {
-            if let Some(level) = levels.get_mut(gene) {
-                *level = regulation;
-            }
-            morphogen = regulation;
+        let mut levels: Vec<A, N> = Vec::new();
+        self.regulate(x, &mut levels, |levels, _, regulation| {
+            // Genes are visited in order and there are at most N, so the next level always fits.
+            let _ = levels.push(regulation);
         });
-        morphogen
+        levels.last().copied().unwrap_or(A::ZERO)
     }
 }
 

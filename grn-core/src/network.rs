@@ -246,8 +246,8 @@ pub(crate) trait Levels<A> {
     fn level(&self, gene: usize) -> A;
 }
 
-impl<A: Arithmetic, const N: usize> Levels<A> for [A; N] {
+impl<A: Arithmetic, L: AsRef<[A]>> Levels<A> for L {
     fn level(&self, gene: usize) -> A {
-        self.get(gene).copied().unwrap_or(A::ZERO)
+        self.as_ref().get(gene).copied().unwrap_or(A::ZERO)
     }
 }

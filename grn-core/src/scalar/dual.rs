@@ -50,6 +50,7 @@ impl<S: Scalar> Sub for Dual<S> {
 
 impl<S: Scalar> Mul for Dual<S> {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule has a sum")]
     fn mul(self, other: Self) -> Self {
         Dual::with(self.value * other.value, self, other, |a, b| a * other.value + self.value * b)
     }

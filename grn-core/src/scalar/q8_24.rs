@@ -68,6 +68,7 @@ impl Mul for Q8_24 {
 impl Div for Q8_24 {
     type Output = Self;
     /// Rounded towards zero; division by zero saturates with the dividend's sign (0 / 0 is 0).
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the dividend is widened by a shift")]
     fn div(self, other: Self) -> Self {
         let dividend = i64::from(self.to_bits()) << FRACTION_BITS;
         match dividend.checked_div(i64::from(other.to_bits())) {
@@ -85,6 +86,7 @@ const KNOTS: usize = (SATURATED_FROM << KNOTS_PER_UNIT_LOG2) + 3;
 /// `LOGISTIC_KNOTS[i + 1]` = round(2^24 / (1 + e^(-i/32))), i = -1 ..= 577.
 static LOGISTIC_KNOTS: [i32; KNOTS] = logistic_knots();
 
+#[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
 const fn logistic_knots() -> [i32; KNOTS] {
     let step = 1.0 / (1 << KNOTS_PER_UNIT_LOG2) as f64;
     let ratio = 1.0 / exp_series(step);

@@ -1,1 +1,4 @@
-//! Skeleton.
+//! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
+
+pub mod tree;
+pub mod variation;

@@ -1,4 +1,5 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+pub mod objective;
 pub mod tree;
 pub mod variation;

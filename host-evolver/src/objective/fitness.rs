@@ -1,0 +1,154 @@
+//! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
+
+use super::contour::{Contours, Tracer};
+use super::model::Model;
+use super::profile::Profile;
+use super::world::{Snapshot, World};
+use crate::tree::Tree;
+use grn_core::geometry::{Point, Vector};
+
+/// Candidate points per ring that f2 averages over.
+pub const CANDIDATES_PER_RING: usize = 48;
+/// Candidate points nearer to an obstacle than this (metres) violate the constraint.
+pub const SMALLEST_CLEARANCE: f64 = 0.05;
+/// f2 of a snapshot without any ring: every distance out of range and every obstacle too close.
+pub const WORST_F2: f64 = 2.0;
+/// Violation of a model without a pattern: at every snapshot no target enclosed.
+const NO_PATTERN_VIOLATION: f64 = 1.0;
+
+/// What a model is worth in a scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation {
+    /// The paper's f2, averaged over snapshots; in [0, 2], less is better.
+    pub f2: f64,
+    /// Mean over snapshots of the share of targets not enclosed plus the share of candidate points too close; 0 for a
+    /// feasible model, at most 2.
+    pub violation: f64,
+}
+
+impl Evaluation {
+    /// The value of something that makes no pattern at all.
+    pub const NO_PATTERN: Evaluation = Evaluation { f2: WORST_F2, violation: NO_PATTERN_VIOLATION };
+
+    /// Whether every target is enclosed everywhere and every candidate point is clear.
+    pub fn is_feasible(&self) -> bool {
+        self.violation == 0.0
+    }
+}
+
+type DistanceTerm = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// The terms of f2 as functions of a distance in metres.
+struct Terms {
+    /// sig(d, d_max, k1) + sig(d_min, d, k2).
+    target: Profile<DistanceTerm>,
+    /// sig(d_obstacle, d, k3).
+    obstacle: Profile<DistanceTerm>,
+}
+
+/// sig(x, θ, k) of the paper.
+fn sig(x: f64, theta: f64, k: f64) -> f64 {
+    1.0 / (1.0 + libm::exp(-k * (x - theta)))
+}
+
+impl Terms {
+    fn of(world: &World) -> Terms {
+        let ring = world.scenario().ring();
+        let (k, d_min, d_max, d_obstacle) = (ring.steepness, ring.d_min, ring.d_max, ring.d_obstacle);
+        Terms {
+            target: Profile::new(Box::new(move |d| sig(d, d_max, k) + sig(d_min, d, k)), k, d_max),
+            obstacle: Profile::new(Box::new(move |d| sig(d_obstacle, d, k)), k, d_obstacle),
+        }
+    }
+}
+
+/// Judges models in one world; one per thread.
+pub struct Judge<'w> {
+    world: &'w World,
+    terms: Terms,
+    tracer: Tracer<'w>,
+}
+
+impl<'w> Judge<'w> {
+    /// A judge for `world`.
+    pub fn new(world: &'w World) -> Self {
+        Judge { world, terms: Terms::of(world), tracer: Tracer::new(world) }
+    }
+
+    /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold.
+    pub fn judge_tree(&mut self, tree: &Tree, steepness: f32) -> Evaluation {
+        let level = self.world.scenario().morphogen().level;
+        match tree.network(steepness).ok().and_then(|network| Model::new(&network, level).ok()) {
+            Some(model) => self.judge(&model),
+            None => Evaluation::NO_PATTERN,
+        }
+    }
+
+    /// Evaluates a model over all snapshots.
+    pub fn judge(&mut self, model: &Model) -> Evaluation {
+        let world = self.world;
+        let (mut f2, mut violation) = (0.0, 0.0);
+        for snapshot in world.snapshots() {
+            let contours = self.tracer.trace(model, snapshot);
+            let moment = self.judge_moment(snapshot, &contours);
+            f2 += moment.f2;
+            violation += moment.violation;
+        }
+        let count = world.snapshots().len() as f64;
+        Evaluation { f2: f2 / count, violation: violation / count }
+    }
+
+    fn judge_moment(&self, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+        let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
+        let lost = lost / snapshot.targets.len() as f64;
+        let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
+        for ring in &contours.rings {
+            for point in equally_spaced(ring, CANDIDATES_PER_RING) {
+                to_targets += sum_over(&snapshot.targets, point, &self.terms.target);
+                to_obstacles += sum_over(&snapshot.obstacle_points, point, &self.terms.obstacle);
+                close += usize::from(self.world.is_closer_than(point, SMALLEST_CLEARANCE));
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return Evaluation { f2: WORST_F2, violation: lost };
+        }
+        let count = count as f64;
+        let per_target = count * snapshot.targets.len() as f64;
+        let per_obstacle = count * snapshot.obstacle_points.len().max(1) as f64;
+        Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
+    }
+}
+
+fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile<DistanceTerm>) -> f64 {
+    sources.iter().map(|&source| {
+        let offset = point - source;
+        term.at(offset.dot(offset))
+    }).sum()
+}
+
+/// `count` points on a closed polygon, at equal arc length, from its first vertex on.
+pub fn equally_spaced(polygon: &[Point<f64>], count: usize) -> impl Iterator<Item = Point<f64>> {
+    let edges = move |start: usize| {
+        let end = if start + 1 == polygon.len() { 0 } else { start + 1 };
+        (polygon[start], polygon[end] - polygon[start])
+    };
+    let perimeter: f64 = (0..polygon.len()).map(|start| edges(start).1.length()).sum();
+    let spacing = perimeter / count as f64;
+    let mut edge = 0;
+    let mut passed = 0.0;
+    (0..count).filter_map(move |candidate| {
+        let place = candidate as f64 * spacing;
+        while edge < polygon.len() {
+            let (start, along) = edges(edge);
+            let length = along.length();
+            if place <= passed + length || edge + 1 == polygon.len() {
+                let fraction = if length > 0.0 { ((place - passed) / length).min(1.0) } else { 0.0 };
+                return Some(start + Vector::new(along.x * fraction, along.y * fraction));
+            }
+            passed += length;
+            edge += 1;
+        }
+        None
+    })
+}

@@ -1,0 +1,15 @@
+//! What a good model is: the pattern it makes in a scenario, and the paper's f2 of that pattern (model page, 3 and 4).
+//!
+//! A scenario is prepared once: the morphogens x1 and x2 depend on the world alone and are kept on a lattice. A model is
+//! then judged by flooding the inside component of each target, following its contour, and scoring candidate points.
+
+mod contour;
+mod fitness;
+mod model;
+mod profile;
+mod world;
+
+pub use contour::{Contours, Tracer};
+pub use fitness::{CANDIDATES_PER_RING, Evaluation, Judge, SMALLEST_CLEARANCE};
+pub use model::Model;
+pub use world::{LATTICE_STEP, Snapshot, World};

@@ -4,7 +4,7 @@ mod polygon;
 
 pub use polygon::{Polygon, PolygonError};
 
-use grn_core::field::{Nearest, Obstacles};
+use grn_core::field::Obstacles;
 use grn_core::geometry::{Point, Vector};
 
 /// |v|², without the square root.
@@ -254,13 +254,9 @@ impl Walls {
 }
 
 impl Obstacles<f64> for Walls {
-    fn nearest(&self, point: Point<f64>) -> Option<Nearest<f64>> {
-        let (boundary, squared) = self.nearest_boundary(point)?;
-        if squared == 0.0 || self.containing(point).is_some() {
-            return Some(Nearest { distance: 0.0, away: Vector::ZERO });
-        }
-        let distance = squared.sqrt();
-        Some(Nearest { distance, away: (point - boundary) * (1.0 / distance) })
+    fn offset_from_nearest(&self, point: Point<f64>) -> Option<Vector<f64>> {
+        let (boundary, _) = self.nearest_boundary(point)?;
+        Some(if self.containing(point).is_some() { Vector::ZERO } else { point - boundary })
     }
 }
 

@@ -87,17 +87,17 @@ fn walls_are_obstacles() {
     let square = polygon(&[(2.0, 2.0), (4.0, 2.0), (4.0, 4.0), (2.0, 4.0)]).unwrap();
     let far = polygon(&[(9.0, 9.0), (8.0, 9.0), (8.0, 8.0)]).unwrap();
     let walls = Walls::new(vec![far, square]);
-    let away = |x, y| walls.nearest(Vector::new(x, y)).unwrap();
-    assert_eq!(away(3.0, 1.5), Nearest { distance: 0.5, away: Vector::new(0.0, -1.0) });
-    assert_eq!(away(3.0, 3.5), Nearest { distance: 0.0, away: Vector::ZERO });
-    assert_eq!(away(3.0, 2.0), Nearest { distance: 0.0, away: Vector::ZERO });
+    let away = |x, y| walls.offset_from_nearest(Vector::new(x, y)).unwrap();
+    assert_eq!(away(3.0, 1.5), Vector::new(0.0, -0.5));
+    assert_eq!(away(3.0, 3.5), Vector::ZERO);
+    assert_eq!(away(3.0, 2.0), Vector::ZERO);
     let corner = away(5.0, 1.0);
-    assert!((corner.away.length() - 1.0).abs() < 1e-15 && corner.away.x == -corner.away.y);
+    assert!((corner.length() - libm::sqrt(2.0)).abs() < 1e-15 && corner.x == -corner.y);
     assert_eq!(walls.signed_distance(Vector::new(3.0, 3.75)), -0.25);
     assert_eq!(walls.signed_distance(Vector::new(3.0, 4.75)), 0.75);
     assert_eq!(walls.containing(Vector::new(3.0, 3.0)), Some(1));
     assert_eq!(Walls::default().signed_distance(Vector::ZERO), f64::INFINITY);
-    assert_eq!(Walls::default().nearest(Vector::ZERO), None);
+    assert_eq!(Walls::default().offset_from_nearest(Vector::ZERO), None);
 }
 
 #[test]

@@ -217,8 +217,7 @@ impl<'w> Tracer<'w> {
         let across_inside = self.is_inside(across, model, snapshot);
         match (aside, across) {
             (_, Some(across))
-                if across_inside
-                    && (aside_inside || self.is_joined_across(node, direction, model, snapshot)) =>
+                if across_inside && (aside_inside || self.is_joined_across(node, direction, model, snapshot)) =>
             {
                 (across, (right + 2) & 3)
             }
@@ -247,6 +246,7 @@ fn parabola_root(t: [f64; 3], v: [f64; 3]) -> f64 {
         return t[1];
     }
     let [a, b, c] = v;
-    let root = t[0] * b * c / ((a - b) * (a - c)) + t[1] * a * c / ((b - a) * (b - c)) + t[2] * a * b / ((c - a) * (c - b));
+    let root =
+        t[0] * b * c / ((a - b) * (a - c)) + t[1] * a * c / ((b - a) * (b - c)) + t[2] * a * b / ((c - a) * (c - b));
     if (0.0..=1.0).contains(&root) { root } else { t[1] }
 }

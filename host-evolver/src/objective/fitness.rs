@@ -121,10 +121,13 @@ impl<'w> Judge<'w> {
 }
 
 fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile<DistanceTerm>) -> f64 {
-    sources.iter().map(|&source| {
-        let offset = point - source;
-        term.at(offset.dot(offset))
-    }).sum()
+    sources
+        .iter()
+        .map(|&source| {
+            let offset = point - source;
+            term.at(offset.dot(offset))
+        })
+        .sum()
 }
 
 /// `count` points on a closed polygon, at equal arc length, from its first vertex on.

@@ -72,8 +72,7 @@ impl Lattice {
         let place = (point - self.origin) * (1.0 / LATTICE_STEP);
         let (column, row) = (place.x.round(), place.y.round());
         let fits = |value: f64, count: usize| value >= 0.0 && value < count as f64;
-        (fits(column, self.columns) && fits(row, self.rows))
-            .then(|| row as usize * self.columns + column as usize)
+        (fits(column, self.columns) && fits(row, self.rows)).then(|| row as usize * self.columns + column as usize)
     }
 }
 

@@ -54,3 +54,5 @@ pub mod bounds;
 pub mod de;
 pub mod hypervolume;
 pub mod nsga2;
+pub mod problems;
+pub mod real;

@@ -53,6 +53,7 @@
 pub mod bounds;
 pub mod de;
 pub mod hypervolume;
+pub mod knee;
 pub mod nsga2;
 pub mod problems;
 pub mod real;

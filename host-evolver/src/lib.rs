@@ -2,5 +2,6 @@
 
 pub mod objective;
 pub mod published;
+pub mod search;
 pub mod tree;
 pub mod variation;

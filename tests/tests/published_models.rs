@@ -1,4 +1,5 @@
 //! The paper's printed models against reference numbers made by an independent double-precision program.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use firmware_sim::scenario::Scenario;
 use grn_core::field::{Field, Kernel};

@@ -15,11 +15,7 @@ fn scores() -> Vec<Scores<2>> {
     let mut scores: Vec<Scores<2>> = (0..3000)
         .map(|_| Scores {
             objectives: [rng.random(), rng.random()],
-            violation: if rng.random_ratio(1, 3) {
-                rng.random()
-            } else {
-                0.0
-            },
+            violation: if rng.random_ratio(1, 3) { rng.random() } else { 0.0 },
         })
         .collect();
     scores.extend_from_within(1000..2000);
@@ -28,19 +24,10 @@ fn scores() -> Vec<Scores<2>> {
 
 fn nsga2(c: &mut Criterion) {
     let scores = scores();
-    let feasible: Vec<_> = scores
-        .iter()
-        .map(|s| Scores::feasible(s.objectives))
-        .collect();
-    c.bench_function("sort 4000 points, a third infeasible", |b| {
-        b.iter(|| sort(black_box(&scores)))
-    });
-    c.bench_function("sort 4000 points, all feasible", |b| {
-        b.iter(|| sort(black_box(&feasible)))
-    });
-    c.bench_function("standings of 4000 points", |b| {
-        b.iter(|| standings(black_box(&feasible)))
-    });
+    let feasible: Vec<_> = scores.iter().map(|s| Scores::feasible(s.objectives)).collect();
+    c.bench_function("sort 4000 points, a third infeasible", |b| b.iter(|| sort(black_box(&scores))));
+    c.bench_function("sort 4000 points, all feasible", |b| b.iter(|| sort(black_box(&feasible))));
+    c.bench_function("standings of 4000 points", |b| b.iter(|| standings(black_box(&feasible))));
 }
 
 fn runs(c: &mut Criterion) {

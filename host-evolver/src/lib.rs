@@ -1,5 +1,6 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+pub mod evolve;
 pub mod objective;
 pub mod published;
 pub mod search;

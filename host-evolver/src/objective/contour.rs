@@ -1,7 +1,8 @@
-//! From a model and a moment to the pattern: flood the inside component of each target, then follow its edge.
+//! On one lattice: flood the inside component of a target, then follow its edge.
 
+use super::lattice::{Medium, NodeIndex};
 use super::model::Model;
-use super::world::{NodeIndex, Snapshot, World};
+use super::world::Snapshot;
 use grn_core::geometry::Point;
 
 const DIRECTIONS: [u8; 4] = [0, 1, 2, 3];
@@ -9,17 +10,6 @@ const DIRECTIONS: [u8; 4] = [0, 1, 2, 3];
 /// The next direction clockwise.
 const fn right_of(direction: u8) -> u8 {
     (direction + 3) & 3
-}
-
-/// The pattern of one model at one moment.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Contours {
-    /// Closed contours that bound an inside component holding a target; metres, first point not repeated.
-    pub rings: Vec<Vec<Point<f64>>>,
-    /// Outlines of components that leak; only filled when asked for.
-    pub leaks: Vec<Vec<Point<f64>>>,
-    /// For each target whether a closed component holds it.
-    pub enclosed: Vec<bool>,
 }
 
 /// What is known of a lattice node in the current moment.
@@ -33,110 +23,114 @@ struct Cell {
     followed: u8,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Component {
+/// What a flood found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Component {
+    /// It is bounded all around.
     Closed,
+    /// It touches a wall or the lattice's border.
     Leaks,
 }
 
-/// Traces patterns; keeps its working memory from one to the next.
-pub struct Tracer<'w> {
-    world: &'w World,
+/// Floods and follows components on one lattice; keeps its working memory from one to the next.
+///
+/// The functions between two calls of [`Follower::begin`] must be given the same model and snapshot.
+pub(super) struct Follower<M> {
+    medium: M,
     cells: Vec<Cell>,
     epoch: u32,
     flood: Vec<NodeIndex>,
     crossings: Vec<(NodeIndex, u8)>,
-    components: Vec<Component>,
-    outline_leaks: bool,
+    components: u16,
 }
 
-impl<'w> Tracer<'w> {
-    /// A tracer for one world.
-    pub fn new(world: &'w World) -> Self {
-        Tracer {
-            world,
-            cells: vec![Cell::default(); world.lattice.nodes().len()],
-            epoch: 0,
-            flood: Vec::new(),
-            crossings: Vec::new(),
-            components: Vec::new(),
-            outline_leaks: false,
-        }
+impl<M: Medium> Follower<M> {
+    pub(super) fn new(medium: M) -> Self {
+        let cells = vec![Cell::default(); medium.lattice().nodes().len()];
+        Follower { medium, cells, epoch: 0, flood: Vec::new(), crossings: Vec::new(), components: 0 }
     }
 
-    /// A tracer that also fills [`Contours::leaks`], for drawing.
-    pub fn with_leaks(world: &'w World) -> Self {
-        Tracer { outline_leaks: true, ..Self::new(world) }
-    }
-
-    /// The pattern of `model` at `snapshot`, which must belong to the tracer's world.
-    pub fn trace(&mut self, model: &Model, snapshot: &Snapshot) -> Contours {
+    /// Forgets the last model and moment.
+    pub(super) fn begin(&mut self) {
         self.epoch += 1;
-        self.components.clear();
-        let mut contours = Contours::default();
-        for &target in &snapshot.targets {
-            let enclosed = self.component_holding(target, model, snapshot, &mut contours);
-            contours.enclosed.push(enclosed == Some(Component::Closed));
-        }
-        contours
+        self.components = 0;
     }
 
-    /// The component that holds `target`, flooded and followed unless it is known; `None` if the target is outside.
-    fn component_holding(
+    /// The node next to `target` from which its component can be flooded: nearest first, error at least `threshold`.
+    pub(super) fn start(
         &mut self,
         target: Point<f64>,
+        threshold: f64,
         model: &Model,
         snapshot: &Snapshot,
-        contours: &mut Contours,
-    ) -> Option<Component> {
-        let [x1, x2] = self.world.inputs_at(snapshot, target);
-        if model.error(x1, x2) < 0.0 {
-            return None;
-        }
-        let corners = self.world.lattice.cell_around(target);
-        let start = corners.into_iter().find(|&node| self.error(node, model, snapshot) >= 0.0)?;
-        if let Some(known) = usize::from(self.cells[start].component).checked_sub(1) {
-            return self.components.get(known).copied();
-        }
-        let found = self.flood(start, model, snapshot);
-        self.components.push(found);
-        match found {
-            Component::Closed => self.follow_all(model, snapshot, &mut contours.rings),
-            Component::Leaks if self.outline_leaks => self.follow_all(model, snapshot, &mut contours.leaks),
-            Component::Leaks => {}
-        }
-        Some(found)
+    ) -> Option<NodeIndex> {
+        let corners = self.medium.lattice().cell_around(target);
+        corners.into_iter().find(|&node| self.error(node, model, snapshot) >= threshold)
+    }
+
+    /// How many components were explored since the beginning.
+    pub(super) fn components(&self) -> u16 {
+        self.components
+    }
+
+    /// The number of the last explored component that holds a node, from 1; 0 for none.
+    pub(super) fn component_of(&self, node: NodeIndex) -> u16 {
+        self.cells[node].component
     }
 
     fn error(&mut self, node: NodeIndex, model: &Model, snapshot: &Snapshot) -> f64 {
-        let cell = &mut self.cells[node];
-        if cell.epoch != self.epoch {
-            let error = model.error(snapshot.x1[node], self.world.x2[node]);
-            *cell = Cell { error, epoch: self.epoch, component: 0, followed: 0 };
+        if self.cells[node].epoch != self.epoch {
+            let [x1, x2] = self.medium.inputs(snapshot, node);
+            let error = model.error(x1, x2);
+            self.cells[node] = Cell { error, epoch: self.epoch, component: 0, followed: 0 };
         }
-        cell.error
+        self.cells[node].error
     }
 
     fn is_inside(&mut self, node: Option<NodeIndex>, model: &Model, snapshot: &Snapshot) -> bool {
         node.is_some_and(|node| self.error(node, model, snapshot) >= 0.0)
     }
 
-    /// Labels the component of `start` and collects where its edge crosses the lattice. Ends early at a leak, unless
-    /// leaks are to be outlined.
-    fn flood(&mut self, start: NodeIndex, model: &Model, snapshot: &Snapshot) -> Component {
-        let world = self.world;
-        let label = self.components.len() as u16 + 1;
+    /// Whether the component of `start` at the given threshold is closed; stops at the first leak.
+    pub(super) fn probe(&mut self, start: NodeIndex, threshold: f64, model: &Model, snapshot: &Snapshot) -> Component {
+        self.components += 1;
+        let label = self.components;
+        let mut found = Component::Closed;
+        self.flood_from(start, label);
+        while let Some(node) = self.flood.pop() {
+            let neighbours = DIRECTIONS.map(|direction| self.medium.lattice().neighbour(node, direction));
+            if self.medium.clearance(node) <= 0.0 || neighbours.contains(&None) {
+                found = Component::Leaks;
+                break;
+            }
+            for neighbour in neighbours.into_iter().flatten() {
+                if self.error(neighbour, model, snapshot) >= threshold {
+                    self.join(Some(neighbour), label);
+                }
+            }
+        }
+        found
+    }
+
+    /// Labels the component of `start` and collects where its edge crosses the lattice. May stop at the first leak.
+    pub(super) fn label(
+        &mut self,
+        start: NodeIndex,
+        stop_at_leak: bool,
+        model: &Model,
+        snapshot: &Snapshot,
+    ) -> Component {
+        self.components += 1;
+        let label = self.components;
         let mut found = Component::Closed;
         self.crossings.clear();
-        self.flood.clear();
-        self.flood.push(start);
-        self.cells[start].component = label;
+        self.flood_from(start, label);
         while let Some(node) = self.flood.pop() {
-            let neighbours = DIRECTIONS.map(|direction| world.lattice.neighbour(node, direction));
-            if world.is_in_wall(node) || neighbours.contains(&None) {
+            let neighbours = DIRECTIONS.map(|direction| self.medium.lattice().neighbour(node, direction));
+            if self.medium.clearance(node) <= 0.0 || neighbours.contains(&None) {
                 found = Component::Leaks;
-                if !self.outline_leaks {
-                    return found;
+                if stop_at_leak {
+                    break;
                 }
             }
             let inside = neighbours.map(|neighbour| self.is_inside(neighbour, model, snapshot));
@@ -149,7 +143,7 @@ impl<'w> Tracer<'w> {
                 self.crossings.push((node, direction));
                 let right = right_of(direction);
                 if !inside[usize::from(right)] {
-                    let diagonal = neighbours[side].and_then(|next| world.lattice.neighbour(next, right));
+                    let diagonal = neighbours[side].and_then(|next| self.medium.lattice().neighbour(next, right));
                     if self.is_inside(diagonal, model, snapshot)
                         && self.is_joined_across(node, direction, model, snapshot)
                     {
@@ -161,9 +155,15 @@ impl<'w> Tracer<'w> {
         found
     }
 
+    fn flood_from(&mut self, start: NodeIndex, label: u16) {
+        self.flood.clear();
+        self.flood.push(start);
+        self.cells[start].component = label;
+    }
+
     fn join(&mut self, node: Option<NodeIndex>, label: u16) {
         if let Some(node) = node
-            && self.cells[node].component == 0
+            && self.cells[node].component != label
         {
             self.cells[node].component = label;
             self.flood.push(node);
@@ -173,28 +173,29 @@ impl<'w> Tracer<'w> {
     /// Whether the middle of the cell to the right of `node` → `direction` is inside: joins its two inside corners.
     fn is_joined_across(&self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> bool {
         let right = right_of(direction);
-        let lattice = &self.world.lattice;
+        let lattice = self.medium.lattice();
         let ahead = lattice.neighbour(node, direction);
         let aside = lattice.neighbour(node, right);
         let across = ahead.and_then(|ahead| lattice.neighbour(ahead, right));
         let corners = [Some(node), ahead, aside, across];
-        let mean = |values: &[f64]| corners.iter().flatten().map(|&corner| values[corner]).sum::<f64>() / 4.0;
-        model.error(mean(&snapshot.x1), mean(&self.world.x2)) >= 0.0
+        let inputs = corners.iter().flatten().map(|&corner| self.medium.inputs(snapshot, corner));
+        let [x1, x2] = inputs.fold([0.0; 2], |sum, inputs| [sum[0] + inputs[0] / 4.0, sum[1] + inputs[1] / 4.0]);
+        model.error(x1, x2) >= 0.0
     }
 
-    /// Follows every edge of the component just flooded.
-    fn follow_all(&mut self, model: &Model, snapshot: &Snapshot, loops: &mut Vec<Vec<Point<f64>>>) {
+    /// Follows every edge of the component labelled last.
+    pub(super) fn follow(&mut self, model: &Model, snapshot: &Snapshot, loops: &mut Vec<Vec<Point<f64>>>) {
         let crossings = std::mem::take(&mut self.crossings);
         for &(node, direction) in &crossings {
             if self.cells[node].followed & (1 << direction) == 0 {
-                loops.push(self.follow((node, direction), model, snapshot));
+                loops.push(self.follow_one((node, direction), model, snapshot));
             }
         }
         self.crossings = crossings;
     }
 
     /// Walks along one closed contour with the inside to the left, from crossing to crossing.
-    fn follow(&mut self, start: (NodeIndex, u8), model: &Model, snapshot: &Snapshot) -> Vec<Point<f64>> {
+    fn follow_one(&mut self, start: (NodeIndex, u8), model: &Model, snapshot: &Snapshot) -> Vec<Point<f64>> {
         let mut points = Vec::new();
         let (mut node, mut direction) = start;
         loop {
@@ -209,7 +210,7 @@ impl<'w> Tracer<'w> {
 
     /// Marching squares in the cell to the right of the edge `node` → `direction`, whose far end is outside.
     fn next_crossing(&mut self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> (NodeIndex, u8) {
-        let lattice = &self.world.lattice;
+        let lattice = self.medium.lattice();
         let right = right_of(direction);
         let aside = lattice.neighbour(node, right);
         let across = aside.and_then(|aside| lattice.neighbour(aside, direction));
@@ -228,14 +229,14 @@ impl<'w> Tracer<'w> {
 
     /// Where the pattern crosses the edge: from the chord, one exact evaluation, then the parabola through three points.
     fn crossing_point(&self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> Point<f64> {
-        let Some(outer) = self.world.lattice.neighbour(node, direction) else {
-            return self.world.lattice.point(node);
+        let Some(outer) = self.medium.lattice().neighbour(node, direction) else {
+            return self.medium.lattice().point(node);
         };
         let (inner_error, outer_error) = (self.cells[node].error, self.cells[outer].error);
         let chord = inner_error / (inner_error - outer_error);
-        let [x1, x2] = self.world.inputs_between(snapshot, node, outer, chord);
+        let [x1, x2] = self.medium.inputs_between(snapshot, node, outer, chord);
         let t = parabola_root([0.0, chord, 1.0], [inner_error, model.error(x1, x2), outer_error]);
-        self.world.between(node, outer, t)
+        self.medium.between(node, outer, t)
     }
 }
 

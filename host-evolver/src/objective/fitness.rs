@@ -1,8 +1,8 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
-use super::contour::{Contours, Tracer};
 use super::model::Model;
 use super::profile::Profile;
+use super::tracer::{Contours, Tracer};
 use super::world::{Snapshot, World};
 use crate::tree::Tree;
 use grn_core::geometry::{Point, Vector};

@@ -5,11 +5,13 @@
 
 mod contour;
 mod fitness;
+mod lattice;
 mod model;
 mod profile;
+mod tracer;
 mod world;
 
-pub use contour::{Contours, Tracer};
 pub use fitness::{CANDIDATES_PER_RING, Evaluation, Judge, SMALLEST_CLEARANCE};
 pub use model::Model;
+pub use tracer::{Contours, Tracer};
 pub use world::{LATTICE_STEP, Snapshot, World};

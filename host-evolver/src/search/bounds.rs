@@ -21,11 +21,7 @@ pub struct BoundsError {
 impl fmt::Display for BoundsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (lo, hi) = self.interval;
-        write!(
-            f,
-            "coordinate {}: [{lo}, {hi}] is not an interval with finite ends in order",
-            self.coordinate
-        )
+        write!(f, "coordinate {}: [{lo}, {hi}] is not an interval with finite ends in order", self.coordinate)
     }
 }
 
@@ -40,10 +36,7 @@ impl Bounds {
     pub fn new(intervals: Vec<(f64, f64)>) -> Result<Self, BoundsError> {
         let bad = |&(lo, hi): &(f64, f64)| !(lo <= hi && (hi - lo).is_finite());
         match intervals.iter().position(bad) {
-            Some(coordinate) => Err(BoundsError {
-                coordinate,
-                interval: intervals[coordinate],
-            }),
+            Some(coordinate) => Err(BoundsError { coordinate, interval: intervals[coordinate] }),
             None => Ok(Self(intervals)),
         }
     }
@@ -77,17 +70,12 @@ impl Bounds {
     /// The first coordinate of `x` that is not within its interval (NaN never is). Lengths are not compared.
     #[must_use]
     pub fn outside(&self, x: &[f64]) -> Option<usize> {
-        x.iter()
-            .zip(&self.0)
-            .position(|(x, (lo, hi))| !(lo <= x && x <= hi))
+        x.iter().zip(&self.0).position(|(x, (lo, hi))| !(lo <= x && x <= hi))
     }
 
     /// A vector drawn uniformly from the box, one number from `rng` a coordinate.
     pub fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Vec<f64> {
-        self.0
-            .iter()
-            .map(|&(lo, hi)| (lo + rng.random::<f64>() * (hi - lo)).min(hi))
-            .collect()
+        self.0.iter().map(|&(lo, hi)| (lo + rng.random::<f64>() * (hi - lo)).min(hi)).collect()
     }
 }
 
@@ -100,13 +88,7 @@ mod tests {
 
     #[test]
     fn bad_intervals_are_rejected_and_named() {
-        for interval in [
-            (1.0, 0.0),
-            (f64::NAN, 1.0),
-            (0.0, f64::NAN),
-            (0.0, f64::INFINITY),
-            (f64::MIN, f64::MAX),
-        ] {
+        for interval in [(1.0, 0.0), (f64::NAN, 1.0), (0.0, f64::NAN), (0.0, f64::INFINITY), (f64::MIN, f64::MAX)] {
             let error = Bounds::new(vec![(0.0, 1.0), interval]).unwrap_err();
             assert_eq!(error.coordinate, 1);
             assert!(error.to_string().starts_with("coordinate 1: ["), "{error}");

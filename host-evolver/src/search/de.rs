@@ -62,11 +62,7 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
 ) -> Result<Outcome<Fit>, InitialError> {
     settings.check_initial(bounds, initial)?;
     if bounds.dimension() == 0 {
-        return Ok(Outcome {
-            best: Vec::new(),
-            fitness: evaluate(&[]),
-            evaluations: 1,
-        });
+        return Ok(Outcome { best: Vec::new(), fitness: evaluate(&[]), evaluations: 1 });
     }
     let budget = settings.evaluations();
     let mut evaluations = 0;
@@ -76,17 +72,11 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
     };
 
     // The settings allow at least one evaluation, so there is a first member.
-    let first = initial
-        .first()
-        .cloned()
-        .unwrap_or_else(|| bounds.sample(rng));
+    let first = initial.first().cloned().unwrap_or_else(|| bounds.sample(rng));
     let fitness = score(&first);
     let mut population = vec![(first, fitness)];
     while population.len() < settings.population().min(budget) {
-        let x = initial
-            .get(population.len())
-            .cloned()
-            .unwrap_or_else(|| bounds.sample(rng));
+        let x = initial.get(population.len()).cloned().unwrap_or_else(|| bounds.sample(rng));
         let fitness = score(&x);
         population.push((x, fitness));
     }
@@ -113,11 +103,7 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
         }
     }
     let (best, fitness) = population.swap_remove(best);
-    Ok(Outcome {
-        best,
-        fitness,
-        evaluations,
-    })
+    Ok(Outcome { best, fitness, evaluations })
 }
 
 /// The vector that challenges member `target`. The population is full: at least four members.

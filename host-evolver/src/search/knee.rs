@@ -50,21 +50,10 @@ impl Front {
     fn new(given: &[[f64; 2]]) -> Self {
         let usable = |p: &[f64; 2]| p.iter().all(|x| x.abs() <= f64::MAX / 2.0);
         // Adding 0 leaves one zero, so that copies have equal bits.
-        let mut order: Vec<([f64; 2], usize)> = given
-            .iter()
-            .map(|p| p.map(|x| x + 0.0))
-            .zip(0..)
-            .filter(|(p, _)| usable(p))
-            .collect();
-        order.sort_unstable_by(|(a, i), (b, j)| {
-            a[0].total_cmp(&b[0])
-                .then(a[1].total_cmp(&b[1]))
-                .then(i.cmp(j))
-        });
-        let mut front = Self {
-            points: Vec::new(),
-            places: vec![None; given.len()],
-        };
+        let mut order: Vec<([f64; 2], usize)> =
+            given.iter().map(|p| p.map(|x| x + 0.0)).zip(0..).filter(|(p, _)| usable(p)).collect();
+        order.sort_unstable_by(|(a, i), (b, j)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(i.cmp(j)));
+        let mut front = Self { points: Vec::new(), places: vec![None; given.len()] };
         for (point, index) in order {
             match front.points.last() {
                 Some(last) if *last == point => {}
@@ -75,10 +64,7 @@ impl Front {
         }
         if let [first, .., last] = front.points[..] {
             // Both spans are above 0, because neither end dominates the other.
-            let (lo, span) = (
-                [first[0], last[1]],
-                [last[0] - first[0], first[1] - last[1]],
-            );
+            let (lo, span) = ([first[0], last[1]], [last[0] - first[0], first[1] - last[1]]);
             for point in &mut front.points {
                 *point = [0, 1].map(|m| (point[m] - lo[m]) / span[m]);
             }
@@ -88,10 +74,7 @@ impl Front {
 
     /// The values of the caller's points from those of the front's.
     fn values(&self, of_front: &[f64]) -> Vec<f64> {
-        self.places
-            .iter()
-            .map(|place| place.map_or(0.0, |i| of_front[i]))
-            .collect()
+        self.places.iter().map(|place| place.map_or(0.0, |i| of_front[i])).collect()
     }
 
     /// The caller's first point of largest value, between the ends if one there is above `threshold`.
@@ -121,13 +104,9 @@ impl Front {
         let angle = |(i, here): (usize, &[f64; 2])| {
             // How steeply the front comes down to this point, and how steeply it goes on down.
             let left = self.points[i.saturating_sub(reach)..i].iter();
-            let down = left
-                .map(|p| steepness(here[0] - p[0], p[1] - here[1]))
-                .reduce(f64::max);
+            let down = left.map(|p| steepness(here[0] - p[0], p[1] - here[1])).reduce(f64::max);
             let right = self.points[i + 1..].iter().take(reach);
-            let on = right
-                .map(|p| steepness(p[0] - here[0], here[1] - p[1]))
-                .reduce(f64::min);
+            let on = right.map(|p| steepness(p[0] - here[0], here[1] - p[1])).reduce(f64::min);
             PI + (down.unwrap_or(FRAC_PI_2) - on.unwrap_or(0.0))
         };
         self.points.iter().enumerate().map(angle).collect()
@@ -147,19 +126,9 @@ impl Front {
             let from = if k == 0 { i } else { hull[k - 1] };
             let to = hull.get(k + 1).copied().unwrap_or(i);
             substitutes.clear();
-            extend_hull(
-                &mut substitutes,
-                &self.points,
-                (from..=to).filter(|&j| j != i),
-            );
-            let lowest = hull
-                .get(k + 1)
-                .map_or(0.0, |&j| indifference(self.points[i], self.points[j]));
-            let highest = if k == 0 {
-                1.0
-            } else {
-                indifference(self.points[from], self.points[i])
-            };
+            extend_hull(&mut substitutes, &self.points, (from..=to).filter(|&j| j != i));
+            let lowest = hull.get(k + 1).map_or(0.0, |&j| indifference(self.points[i], self.points[j]));
+            let highest = if k == 0 { 1.0 } else { indifference(self.points[from], self.points[i]) };
             losses[i] = self.loss(i, &substitutes, lowest, highest);
         }
         losses
@@ -172,13 +141,10 @@ impl Front {
         let mut upper = highest;
         for (k, &j) in substitutes.iter().enumerate() {
             let (here, other) = (self.points[i], self.points[j]);
-            let next = substitutes
-                .get(k + 1)
-                .map_or(lowest, |&next| indifference(other, self.points[next]));
+            let next = substitutes.get(k + 1).map_or(lowest, |&next| indifference(other, self.points[next]));
             // Not `clamp`, which panics where rounding has left an empty interval.
             let lower = next.max(lowest).min(upper);
-            let excess =
-                |w: f64| (w * (other[0] - here[0]) + (1.0 - w) * (other[1] - here[1])).max(0.0);
+            let excess = |w: f64| (w * (other[0] - here[0]) + (1.0 - w) * (other[1] - here[1])).max(0.0);
             // The excess is linear in between.
             total += (upper - lower) * 0.5 * (excess(lower) + excess(upper));
             upper = lower;
@@ -198,10 +164,7 @@ fn indifference(left: [f64; 2], right: [f64; 2]) -> f64 {
 fn extend_hull(hull: &mut Vec<usize>, points: &[[f64; 2]], indices: impl Iterator<Item = usize>) {
     for c in indices {
         while let [.., a, b] = hull[..] {
-            let (ab, ac) = (
-                [0, 1].map(|m| points[b][m] - points[a][m]),
-                [0, 1].map(|m| points[c][m] - points[a][m]),
-            );
+            let (ab, ac) = ([0, 1].map(|m| points[b][m] - points[a][m]), [0, 1].map(|m| points[c][m] - points[a][m]));
             if ab[0] * ac[1] - ab[1] * ac[0] > 0.0 {
                 break;
             }

@@ -29,10 +29,7 @@ impl<const M: usize> Scores<M> {
     /// The scores of a feasible solution.
     #[must_use]
     pub fn feasible(objectives: [f64; M]) -> Self {
-        Self {
-            objectives,
-            violation: 0.0,
-        }
+        Self { objectives, violation: 0.0 }
     }
 
     /// Whether no constraint is violated.
@@ -44,15 +41,8 @@ impl<const M: usize> Scores<M> {
     /// The scores as they are compared, every field a [`key`].
     fn keys(&self) -> Self {
         // Not `max`, which would turn NaN into 0.
-        let violation = if self.violation < 0.0 {
-            0.0
-        } else {
-            self.violation
-        };
-        Self {
-            objectives: self.objectives.map(key),
-            violation: key(violation),
-        }
+        let violation = if self.violation < 0.0 { 0.0 } else { self.violation };
+        Self { objectives: self.objectives.map(key), violation: key(violation) }
     }
 
     /// Deb's rule: the lesser violation wins, so feasible beats infeasible; at equal violation, Pareto
@@ -70,17 +60,13 @@ impl<const M: usize> Scores<M> {
     #[must_use]
     pub fn dominates(&self, other: &Self) -> bool {
         let (a, b) = (self.keys(), other.keys());
-        a.violation < b.violation
-            || (a.violation == b.violation && pareto(&a.objectives, &b.objectives))
+        a.violation < b.violation || (a.violation == b.violation && pareto(&a.objectives, &b.objectives))
     }
 
     /// Lexicographic by violation and then objectives, on keys. A dominator always comes before what it dominates.
     fn cmp_keys(&self, other: &Self) -> Ordering {
         let start = self.violation.total_cmp(&other.violation);
-        self.objectives
-            .iter()
-            .zip(&other.objectives)
-            .fold(start, |order, (a, b)| order.then_with(|| a.total_cmp(b)))
+        self.objectives.iter().zip(&other.objectives).fold(start, |order, (a, b)| order.then_with(|| a.total_cmp(b)))
     }
 }
 
@@ -103,9 +89,7 @@ impl Standing {
     /// Better first: lower rank, then more room.
     #[must_use]
     pub fn cmp_best_first(&self, other: &Self) -> Ordering {
-        self.rank
-            .cmp(&other.rank)
-            .then_with(|| other.crowding.total_cmp(&self.crowding))
+        self.rank.cmp(&other.rank).then_with(|| other.crowding.total_cmp(&self.crowding))
     }
 }
 
@@ -124,11 +108,7 @@ pub fn sort<const M: usize>(scores: &[Scores<M>]) -> Vec<u32> {
     // Each distinct violation is a world of its own, whose first front follows the last front of the one before.
     let mut first_rank = 0;
     for group in sorted.chunk_by(|(a, _), (b, _)| a.violation == b.violation) {
-        first_rank += if M == 2 {
-            sweep(group, first_rank, &mut ranks)
-        } else {
-            peel(group, first_rank, &mut ranks)
-        };
+        first_rank += if M == 2 { sweep(group, first_rank, &mut ranks) } else { peel(group, first_rank, &mut ranks) };
     }
     ranks
 }
@@ -145,9 +125,7 @@ fn sweep<const M: usize>(group: &[(Scores<M>, usize)], first_rank: u32, ranks: &
             Some(least) => *least = second,
             None => least.push(second),
         }
-        copies
-            .iter()
-            .for_each(|(_, index)| ranks[*index] = first_rank + front as u32);
+        copies.iter().for_each(|(_, index)| ranks[*index] = first_rank + front as u32);
     }
     least.len() as u32
 }
@@ -158,15 +136,12 @@ fn peel<const M: usize>(group: &[(Scores<M>, usize)], first_rank: u32, ranks: &m
     for copies in group.chunk_by(|(a, _), (b, _)| a.objectives == b.objectives) {
         let objectives = &copies[0].0.objectives;
         // The most recent members are the closest, so the likeliest dominators.
-        let front = fronts
-            .partition_point(|front| front.iter().rev().any(|other| pareto(other, objectives)));
+        let front = fronts.partition_point(|front| front.iter().rev().any(|other| pareto(other, objectives)));
         match fronts.get_mut(front) {
             Some(front) => front.push(objectives),
             None => fronts.push(vec![objectives]),
         }
-        copies
-            .iter()
-            .for_each(|(_, index)| ranks[*index] = first_rank + front as u32);
+        copies.iter().for_each(|(_, index)| ranks[*index] = first_rank + front as u32);
     }
     fronts.len() as u32
 }
@@ -188,16 +163,9 @@ pub fn crowding<const M: usize>(scores: &[Scores<M>], ranks: &[u32]) -> Vec<f64>
     let mut order: Vec<usize> = (0..scores.len()).collect();
     let by_objectives = |&a: &usize, &b: &usize| {
         let pairs = keys[a].iter().zip(&keys[b]);
-        pairs.fold(Ordering::Equal, |order, (a, b)| {
-            order.then_with(|| a.total_cmp(b))
-        })
+        pairs.fold(Ordering::Equal, |order, (a, b)| order.then_with(|| a.total_cmp(b)))
     };
-    order.sort_unstable_by(|a, b| {
-        ranks[*a]
-            .cmp(&ranks[*b])
-            .then_with(|| by_objectives(a, b))
-            .then(a.cmp(b))
-    });
+    order.sort_unstable_by(|a, b| ranks[*a].cmp(&ranks[*b]).then_with(|| by_objectives(a, b)).then(a.cmp(b)));
     order.dedup_by(|later, first| ranks[*later] == ranks[*first] && keys[*later] == keys[*first]);
     for front in order.chunk_by_mut(|&a, &b| ranks[a] == ranks[b]) {
         if M == 0 {
@@ -211,12 +179,7 @@ pub fn crowding<const M: usize>(scores: &[Scores<M>], ranks: &[u32]) -> Vec<f64>
 }
 
 /// Adds to the distances of the entries in `front` their gaps in objective `m`, and infinity to its two ends.
-fn add_gaps<const M: usize>(
-    keys: &[[f64; M]],
-    front: &mut [usize],
-    m: usize,
-    distances: &mut [f64],
-) {
+fn add_gaps<const M: usize>(keys: &[[f64; M]], front: &mut [usize], m: usize, distances: &mut [f64]) {
     // Fronts come in order of the first objective.
     if m > 0 {
         front.sort_unstable_by(|&a, &b| keys[a][m].total_cmp(&keys[b][m]).then(a.cmp(&b)));
@@ -239,11 +202,7 @@ fn add_gaps<const M: usize>(
 pub fn standings<const M: usize>(scores: &[Scores<M>]) -> Vec<Standing> {
     let ranks = sort(scores);
     let distances = crowding(scores, &ranks);
-    ranks
-        .into_iter()
-        .zip(distances)
-        .map(|(rank, crowding)| Standing { rank, crowding })
-        .collect()
+    ranks.into_iter().zip(distances).map(|(rank, crowding)| Standing { rank, crowding }).collect()
 }
 
 /// The indices of the `n` best, or of all if there are fewer: best first, equals in index order.
@@ -275,12 +234,7 @@ pub fn tournament<R: Rng + ?Sized>(rng: &mut R, standings: &[Standing]) -> usize
     }
     let a = rng.random_range(0..n);
     let other = rng.random_range(0..n - 1);
-    duel(
-        rng,
-        standings,
-        a,
-        if other >= a { other + 1 } else { other },
-    )
+    duel(rng, standings, a, if other >= a { other + 1 } else { other })
 }
 
 /// The winners of `n` binary tournaments in which everyone enters equally often, as in Deb's own code: the
@@ -291,10 +245,7 @@ pub fn tournament<R: Rng + ?Sized>(rng: &mut R, standings: &[Standing]) -> usize
 /// # Panics
 /// If `standings` is empty and `n` is not 0.
 pub fn tournaments<R: Rng + ?Sized>(rng: &mut R, standings: &[Standing], n: usize) -> Vec<usize> {
-    assert!(
-        n == 0 || !standings.is_empty(),
-        "a tournament needs an entrant"
-    );
+    assert!(n == 0 || !standings.is_empty(), "a tournament needs an entrant");
     if standings.len() == 1 {
         return vec![0; n];
     }
@@ -323,12 +274,7 @@ fn duel<R: Rng + ?Sized>(rng: &mut R, standings: &[Standing], a: usize, b: usize
 /// kept. If nothing is feasible these are among the least violated: look at [`Scores::is_feasible`].
 #[must_use]
 pub fn non_dominated<const M: usize>(scores: &[Scores<M>]) -> Vec<usize> {
-    sort(scores)
-        .into_iter()
-        .zip(0..)
-        .filter(|&(rank, _)| rank == 0)
-        .map(|(_, index)| index)
-        .collect()
+    sort(scores).into_iter().zip(0..).filter(|&(rank, _)| rank == 0).map(|(_, index)| index).collect()
 }
 
 #[cfg(test)]

@@ -15,11 +15,7 @@ pub fn unit_box(dimension: usize) -> Bounds {
 /// `1 + 9 mean(x2..xn)`, the distance term of ZDT1-3: 1 on the front.
 fn zdt_distance(x: &[f64]) -> f64 {
     let rest = x.get(1..).unwrap_or_default();
-    if rest.is_empty() {
-        1.0
-    } else {
-        1.0 + 9.0 * rest.iter().sum::<f64>() / rest.len() as f64
-    }
+    if rest.is_empty() { 1.0 } else { 1.0 + 9.0 * rest.iter().sum::<f64>() / rest.len() as f64 }
 }
 
 fn first(x: &[f64]) -> f64 {
@@ -60,10 +56,7 @@ pub fn do2dk(x: &[f64], knees: u32, skew: f64) -> [f64; 2] {
     let d = x1 - 0.5;
     let r = 5.0 + 10.0 * d * d + libm::cos(2.0 * k * PI * x1) * tilt.sqrt() / k;
     let turn = PI * x1 / (2.0 * tilt) + (1.0 + (tilt - 1.0) / (4.0 * tilt)) * PI;
-    [
-        g * r * (libm::sin(turn) + 1.0),
-        g * r * (libm::cos(PI * x1 / 2.0 + PI) + 1.0),
-    ]
+    [g * r * (libm::sin(turn) + 1.0), g * r * (libm::cos(PI * x1 / 2.0 + PI) + 1.0)]
 }
 
 #[cfg(test)]
@@ -78,9 +71,7 @@ mod tests {
             x[0] = f1;
             assert!((zdt1(&x)[1] - (1.0 - f1.sqrt())).abs() < 1e-15);
             assert!((zdt2(&x)[1] - (1.0 - f1 * f1)).abs() < 1e-15);
-            assert!(
-                (zdt3(&x)[1] - (1.0 - f1.sqrt() - f1 * libm::sin(10.0 * PI * f1))).abs() < 1e-15
-            );
+            assert!((zdt3(&x)[1] - (1.0 - f1.sqrt() - f1 * libm::sin(10.0 * PI * f1))).abs() < 1e-15);
             // Away from the front the second objective is worse.
             x[7] = 0.5;
             assert!(zdt1(&x)[1] > 1.0 - f1.sqrt() && zdt2(&x)[1] > 1.0 - f1 * f1);
@@ -102,12 +93,7 @@ mod tests {
     #[test]
     fn short_vectors_do_not_panic() {
         for x in [&[][..], &[0.5][..]] {
-            assert!(
-                zdt1(x)
-                    .iter()
-                    .chain(&do2dk(x, 1, 0.0))
-                    .all(|f| f.is_finite())
-            );
+            assert!(zdt1(x).iter().chain(&do2dk(x, 1, 0.0)).all(|f| f.is_finite()));
         }
         assert_eq!(unit_box(3).dimension(), 3);
     }

@@ -78,13 +78,7 @@ impl Sbx {
     /// numbers its bit strings stand for: `(y1 + y2 ∓ β (y2 - y1)) / 2`, with `β` drawn from the density
     /// `(η + 1) β^η / 2` below 1 and `(η + 1) / (2 β^(η + 2))` above, cut off at the bounds. Which child gets
     /// which value is a coin's choice. Parents in the box have children in the box.
-    pub fn cross<R: Rng + ?Sized>(
-        &self,
-        rng: &mut R,
-        bounds: &Bounds,
-        a: &mut [f64],
-        b: &mut [f64],
-    ) {
+    pub fn cross<R: Rng + ?Sized>(&self, rng: &mut R, bounds: &Bounds, a: &mut [f64], b: &mut [f64]) {
         if rng.random::<f64>() >= self.0.probability {
             return;
         }
@@ -103,21 +97,13 @@ impl Sbx {
             let spread = |room: f64| {
                 let alpha = 2.0 - libm::pow(1.0 + 2.0 * room / apart, -(self.0.eta + 1.0));
                 let scaled = draw * alpha;
-                let base = if scaled <= 1.0 {
-                    scaled
-                } else {
-                    1.0 / (2.0 - scaled)
-                };
+                let base = if scaled <= 1.0 { scaled } else { 1.0 / (2.0 - scaled) };
                 libm::pow(base, 1.0 / (self.0.eta + 1.0))
             };
             let low = 0.5 * (y1 + y2 - spread(y1 - lo) * apart);
             let high = 0.5 * (y1 + y2 + spread(hi - y2) * apart);
             let (low, high) = (low.max(lo).min(hi), high.max(lo).min(hi));
-            (*a, *b) = if rng.random::<bool>() {
-                (low, high)
-            } else {
-                (high, low)
-            };
+            (*a, *b) = if rng.random::<bool>() { (low, high) } else { (high, low) };
         }
     }
 }
@@ -146,20 +132,12 @@ impl PolynomialMutation {
                 continue;
             }
             let draw = rng.random::<f64>();
-            let (down, room) = if draw < 0.5 {
-                (true, *x - lo)
-            } else {
-                (false, hi - *x)
-            };
+            let (down, room) = if draw < 0.5 { (true, *x - lo) } else { (false, hi - *x) };
             // The share of the density that points this way, from 0 at the wall to 1 at no change.
             let share = if down { 2.0 * draw } else { 2.0 * (1.0 - draw) };
             let wall = libm::pow(1.0 - room / width, power);
             let step = 1.0 - libm::pow(share + (1.0 - share) * wall, 1.0 / power);
-            let moved = if down {
-                *x - step * width
-            } else {
-                *x + step * width
-            };
+            let moved = if down { *x - step * width } else { *x + step * width };
             *x = moved.max(lo).min(hi);
         }
     }
@@ -191,12 +169,7 @@ impl Settings {
         if evaluations == 0 {
             return Err(SettingsError::Budget);
         }
-        Ok(Self {
-            population,
-            evaluations,
-            crossover,
-            mutation,
-        })
+        Ok(Self { population, evaluations, crossover, mutation })
     }
 }
 

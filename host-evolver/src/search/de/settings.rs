@@ -79,30 +79,13 @@ impl fmt::Display for InitialError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooMany { given, population } => {
-                write!(
-                    f,
-                    "{given} initial vectors for a population of {population}"
-                )
+                write!(f, "{given} initial vectors for a population of {population}")
             }
-            Self::Length {
-                vector,
-                length,
-                expected,
-            } => {
-                write!(
-                    f,
-                    "initial vector {vector} has {length} coordinates, the bounds have {expected}"
-                )
+            Self::Length { vector, length, expected } => {
+                write!(f, "initial vector {vector} has {length} coordinates, the bounds have {expected}")
             }
-            Self::Outside {
-                vector,
-                coordinate,
-                value,
-            } => {
-                write!(
-                    f,
-                    "initial vector {vector}: coordinate {coordinate} is {value}, out of bounds"
-                )
+            Self::Outside { vector, coordinate, value } => {
+                write!(f, "initial vector {vector}: coordinate {coordinate} is {value}, out of bounds")
             }
         }
     }
@@ -117,12 +100,7 @@ impl Settings {
     ///
     /// # Errors
     /// The first argument out of range.
-    pub fn new(
-        population: usize,
-        weight: f64,
-        crossover: f64,
-        generations: usize,
-    ) -> Result<Self, SettingsError> {
+    pub fn new(population: usize, weight: f64, crossover: f64, generations: usize) -> Result<Self, SettingsError> {
         if population < 4 {
             return Err(SettingsError::Population(population));
         }
@@ -132,19 +110,11 @@ impl Settings {
         if !(0.0..=1.0).contains(&crossover) {
             return Err(SettingsError::Crossover(crossover));
         }
-        let evaluations = generations
-            .checked_add(1)
-            .and_then(|n| n.checked_mul(population));
+        let evaluations = generations.checked_add(1).and_then(|n| n.checked_mul(population));
         let Some(evaluations) = evaluations else {
             return Err(SettingsError::Generations(generations));
         };
-        Ok(Self {
-            population,
-            weight,
-            crossover,
-            generations,
-            evaluations,
-        })
+        Ok(Self { population, weight, crossover, generations, evaluations })
     }
 
     /// The same, but ending after at most `evaluations`, wherever in a generation that is.
@@ -155,10 +125,7 @@ impl Settings {
         if evaluations == 0 {
             return Err(SettingsError::Budget);
         }
-        Ok(Self {
-            evaluations: self.evaluations.min(evaluations),
-            ..self
-        })
+        Ok(Self { evaluations: self.evaluations.min(evaluations), ..self })
     }
 
     /// NP, the number of vectors kept.
@@ -192,29 +159,17 @@ impl Settings {
     }
 
     /// Rejects initial vectors that are too many or not in the box.
-    pub(super) fn check_initial(
-        &self,
-        bounds: &Bounds,
-        initial: &[Vec<f64>],
-    ) -> Result<(), InitialError> {
+    pub(super) fn check_initial(&self, bounds: &Bounds, initial: &[Vec<f64>]) -> Result<(), InitialError> {
         let (given, population, expected) = (initial.len(), self.population, bounds.dimension());
         if given > population {
             return Err(InitialError::TooMany { given, population });
         }
         for (vector, x) in initial.iter().enumerate() {
             if x.len() != expected {
-                return Err(InitialError::Length {
-                    vector,
-                    length: x.len(),
-                    expected,
-                });
+                return Err(InitialError::Length { vector, length: x.len(), expected });
             }
             if let Some(coordinate) = bounds.outside(x) {
-                return Err(InitialError::Outside {
-                    vector,
-                    coordinate,
-                    value: x[coordinate],
-                });
+                return Err(InitialError::Outside { vector, coordinate, value: x[coordinate] });
             }
         }
         Ok(())

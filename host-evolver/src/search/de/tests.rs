@@ -11,12 +11,7 @@ fn sphere(x: &[f64]) -> f64 {
 }
 
 /// A run with the log of everything it evaluated.
-fn logged(
-    settings: &Settings,
-    bounds: &Bounds,
-    initial: &[Vec<f64>],
-    seed: u64,
-) -> (Outcome<f64>, Vec<Vec<f64>>) {
+fn logged(settings: &Settings, bounds: &Bounds, initial: &[Vec<f64>], seed: u64) -> (Outcome<f64>, Vec<Vec<f64>>) {
     let mut log = Vec::new();
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     let outcome = minimise(
@@ -38,10 +33,7 @@ fn ten_and_one_generation_is_twenty_evaluations() {
     let settings = Settings::new(10, 0.5, 0.9, 1).unwrap();
     let bounds = Bounds::cube(3, 0.0, 2.0).unwrap();
     let (outcome, log) = logged(&settings, &bounds, &[], 1);
-    assert_eq!(
-        (outcome.evaluations, log.len(), settings.evaluations()),
-        (20, 20, 20)
-    );
+    assert_eq!((outcome.evaluations, log.len(), settings.evaluations()), (20, 20, 20));
     assert!(log.iter().all(|x| bounds.contain(x)));
     let least = log.iter().map(|x| sphere(x)).fold(f64::INFINITY, f64::min);
     assert_eq!(outcome.fitness, least);
@@ -70,10 +62,7 @@ fn no_generation_and_no_coordinate() {
     assert_eq!(outcome.evaluations, 4);
     let settings = Settings::new(10, 0.5, 0.9, 5).unwrap();
     let (outcome, log) = logged(&settings, &Bounds::cube(0, 0.0, 1.0).unwrap(), &[vec![]], 3);
-    assert_eq!(
-        (outcome.evaluations, log.len(), outcome.best.len()),
-        (1, 1, 0)
-    );
+    assert_eq!((outcome.evaluations, log.len(), outcome.best.len()), (1, 1, 0));
 }
 
 #[test]
@@ -83,16 +72,8 @@ fn initial_vectors_come_first_and_the_rest_are_drawn() {
     let initial = [vec![1.0, -1.0], vec![0.0, 0.0]];
     let (outcome, log) = logged(&settings, &bounds, &initial, 4);
     assert_eq!(log[..2], initial);
-    assert!(
-        log[2..6]
-            .iter()
-            .all(|x| bounds.contain(x) && !initial.contains(x))
-    );
-    assert_eq!(
-        (outcome.best, outcome.fitness),
-        (vec![0.0, 0.0], 0.0),
-        "the optimum given is kept"
-    );
+    assert!(log[2..6].iter().all(|x| bounds.contain(x) && !initial.contains(x)));
+    assert_eq!((outcome.best, outcome.fitness), (vec![0.0, 0.0], 0.0), "the optimum given is kept");
 }
 
 #[test]
@@ -101,80 +82,34 @@ fn bad_arguments_are_rejected_before_any_evaluation() {
     assert_eq!(new(3, 0.5, 0.9, 1), Err(SettingsError::Population(3)));
     assert_eq!(new(4, 0.0, 0.9, 1), Err(SettingsError::Weight(0.0)));
     assert_eq!(new(4, 2.1, 0.9, 1), Err(SettingsError::Weight(2.1)));
-    assert!(matches!(
-        new(4, f64::NAN, 0.9, 1),
-        Err(SettingsError::Weight(_))
-    ));
+    assert!(matches!(new(4, f64::NAN, 0.9, 1), Err(SettingsError::Weight(_))));
     assert_eq!(new(4, 0.5, -0.1, 1), Err(SettingsError::Crossover(-0.1)));
     assert_eq!(new(4, 0.5, 1.1, 1), Err(SettingsError::Crossover(1.1)));
-    assert!(matches!(
-        new(4, 0.5, f64::NAN, 1),
-        Err(SettingsError::Crossover(_))
-    ));
-    assert_eq!(
-        new(4, 0.5, 0.9, usize::MAX),
-        Err(SettingsError::Generations(usize::MAX))
-    );
+    assert!(matches!(new(4, 0.5, f64::NAN, 1), Err(SettingsError::Crossover(_))));
+    assert_eq!(new(4, 0.5, 0.9, usize::MAX), Err(SettingsError::Generations(usize::MAX)));
     let settings = new(4, 0.5, 0.9, 1).unwrap();
     assert_eq!(settings.within(0), Err(SettingsError::Budget));
 
     let bounds = Bounds::cube(2, 0.0, 1.0).unwrap();
     let run = |initial: &[Vec<f64>]| {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
-        minimise(
-            &settings,
-            &bounds,
-            initial,
-            &mut rng,
-            |_| unreachable!(),
-            at_most,
-        )
-        .unwrap_err()
+        minimise(&settings, &bounds, initial, &mut rng, |_| unreachable!(), at_most).unwrap_err()
     };
     let inside = vec![0.5, 0.5];
-    assert_eq!(
-        run(&vec![inside.clone(); 5]),
-        InitialError::TooMany {
-            given: 5,
-            population: 4
-        }
-    );
-    assert_eq!(
-        run(&[inside.clone(), vec![0.5]]),
-        InitialError::Length {
-            vector: 1,
-            length: 1,
-            expected: 2
-        }
-    );
-    let outside = InitialError::Outside {
-        vector: 1,
-        coordinate: 1,
-        value: 1.5,
-    };
+    assert_eq!(run(&vec![inside.clone(); 5]), InitialError::TooMany { given: 5, population: 4 });
+    assert_eq!(run(&[inside.clone(), vec![0.5]]), InitialError::Length { vector: 1, length: 1, expected: 2 });
+    let outside = InitialError::Outside { vector: 1, coordinate: 1, value: 1.5 };
     assert_eq!(run(&[inside.clone(), vec![0.5, 1.5]]), outside);
-    assert_eq!(
-        outside.to_string(),
-        "initial vector 1: coordinate 1 is 1.5, out of bounds"
-    );
-    assert!(matches!(
-        run(&[vec![f64::NAN, 0.0]]),
-        InitialError::Outside { .. }
-    ));
+    assert_eq!(outside.to_string(), "initial vector 1: coordinate 1 is 1.5, out of bounds");
+    assert!(matches!(run(&[vec![f64::NAN, 0.0]]), InitialError::Outside { .. }));
 }
 
 #[test]
 fn equal_seed_equal_log() {
     let settings = Settings::new(10, 0.5, 0.9, 10).unwrap();
     let bounds = Bounds::cube(5, 0.0, 2.0).unwrap();
-    assert_eq!(
-        logged(&settings, &bounds, &[], 5),
-        logged(&settings, &bounds, &[], 5)
-    );
-    assert_ne!(
-        logged(&settings, &bounds, &[], 5).1,
-        logged(&settings, &bounds, &[], 6).1
-    );
+    assert_eq!(logged(&settings, &bounds, &[], 5), logged(&settings, &bounds, &[], 5));
+    assert_ne!(logged(&settings, &bounds, &[], 5).1, logged(&settings, &bounds, &[], 6).1);
 }
 
 #[test]
@@ -218,10 +153,7 @@ fn ten_dimensional_sphere() {
         })
         .collect();
     counts.sort_unstable();
-    println!(
-        "evaluations to 1e-8: median {}, {} to {}",
-        counts[7], counts[0], counts[14]
-    );
+    println!("evaluations to 1e-8: median {}, {} to {}", counts[7], counts[0], counts[14]);
     assert!((9_000..13_000).contains(&counts[7]), "{counts:?}");
 }
 
@@ -231,17 +163,8 @@ fn debs_rule_finds_a_constrained_minimum() {
     let settings = Settings::new(30, 0.5, 0.9, 150).unwrap();
     let bounds = Bounds::cube(2, -20.0, 5.0).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(8);
-    let evaluate = |x: &[f64]| Scores {
-        objectives: [sphere(x)],
-        violation: (1.0 - x[0] - x[1]).max(0.0),
-    };
-    let outcome = minimise(&settings, &bounds, &[], &mut rng, evaluate, |a, b| {
-        !b.dominates(a)
-    })
-    .unwrap();
+    let evaluate = |x: &[f64]| Scores { objectives: [sphere(x)], violation: (1.0 - x[0] - x[1]).max(0.0) };
+    let outcome = minimise(&settings, &bounds, &[], &mut rng, evaluate, |a, b| !b.dominates(a)).unwrap();
     assert!(outcome.fitness.is_feasible());
-    assert!(
-        (outcome.fitness.objectives[0] - 0.5).abs() < 1e-6,
-        "{outcome:?}"
-    );
+    assert!((outcome.fitness.objectives[0] - 0.5).abs() < 1e-6, "{outcome:?}");
 }

@@ -9,19 +9,13 @@ use crate::search::problems::do2dk;
 #[test]
 fn angles_by_hand() {
     // A corner, seen from the ideal point: 3/4 of a turn.
-    let a = angles(
-        &[[0.0, 1.0], [1e-12, 1e-12], [1.0, 0.0]],
-        Neighbours::Nearest,
-    );
+    let a = angles(&[[0.0, 1.0], [1e-12, 1e-12], [1.0, 0.0]], Neighbours::Nearest);
     assert!((a[1] - 1.5 * PI).abs() < 1e-9, "{a:?}");
     // Straight, and the ends against the vertical and the horizontal.
     let a = angles(&[[0.0, 2.0], [1.0, 1.0], [2.0, 0.0]], Neighbours::Nearest);
     assert_eq!(a, [1.25 * PI, PI, 1.25 * PI]);
     // A notch.
-    let a = angles(
-        &[[0.0, 1.0], [1.0 - 1e-12, 1.0 - 1e-12], [1.0, 0.0]],
-        Neighbours::Nearest,
-    );
+    let a = angles(&[[0.0, 1.0], [1.0 - 1e-12, 1.0 - 1e-12], [1.0, 0.0]], Neighbours::Nearest);
     assert!((a[1] - 0.5 * PI).abs() < 1e-9, "{a:?}");
 }
 
@@ -29,10 +23,7 @@ fn angles_by_hand() {
 fn two_neighbours_see_past_a_close_one() {
     // A point just before the knee takes most of the knee's angle away, and more from itself.
     let front = [[0.0, 10.0], [0.95, 3.0], [1.0, 2.9], [10.0, 0.0]];
-    let (one, two) = (
-        angles(&front, Neighbours::Nearest),
-        angles(&front, Neighbours::Two),
-    );
+    let (one, two) = (angles(&front, Neighbours::Nearest), angles(&front, Neighbours::Two));
     assert!(one.iter().zip(&two).all(|(one, two)| one <= two));
     assert!(two[2] > one[2] + 0.1, "{one:?} {two:?}");
 }
@@ -54,12 +45,7 @@ fn utilities_agree_with_sampled_weights() {
         let mut sampled = vec![0.0; front.points.len()];
         for step in 0..steps {
             let w = (f64::from(step) + 0.5) / f64::from(steps);
-            let mut by_utility: Vec<(f64, usize)> = front
-                .points
-                .iter()
-                .map(|&p| utility(p, w))
-                .zip(0..)
-                .collect();
+            let mut by_utility: Vec<(f64, usize)> = front.points.iter().map(|&p| utility(p, w)).zip(0..).collect();
             by_utility.sort_by(|a, b| a.0.total_cmp(&b.0));
             if let [best, second, ..] = by_utility[..] {
                 sampled[best.1] += (second.0 - best.0) / f64::from(steps);
@@ -84,19 +70,13 @@ const PICKS: [Pick; 3] = [
 fn small_fronts_have_defined_knees() {
     for pick in PICKS {
         assert_eq!(pick(&[]), None);
-        assert_eq!(
-            pick(&[[f64::NAN, 1.0], [1.0, f64::INFINITY], [f64::MAX, 0.0]]),
-            None
-        );
+        assert_eq!(pick(&[[f64::NAN, 1.0], [1.0, f64::INFINITY], [f64::MAX, 0.0]]), None);
         assert_eq!(pick(&[[5.0, 5.0]]), Some(0));
         assert_eq!(pick(&[[f64::NAN, 1.0], [5.0, 5.0], [5.0, 5.0]]), Some(1));
         assert_eq!(pick(&[[0.0, 1.0], [1.0, 0.0]]), Some(0));
         assert_eq!(pick(&[[1.0, 0.0], [0.0, 1.0], [0.0, 1.0]]), Some(0));
     }
-    assert_eq!(
-        marginal_utilities(&[[5.0, 5.0], [5.0, 5.0], [6.0, 6.0]]),
-        [f64::INFINITY, f64::INFINITY, 0.0]
-    );
+    assert_eq!(marginal_utilities(&[[5.0, 5.0], [5.0, 5.0], [6.0, 6.0]]), [f64::INFINITY, f64::INFINITY, 0.0]);
     assert_eq!(marginal_utilities(&[[0.0, 9.0], [3.0, 2.0]]), [0.25, 0.25]);
     assert_eq!(angles(&[[2.0, 2.0]], Neighbours::Nearest), [1.5 * PI]);
 }
@@ -104,10 +84,7 @@ fn small_fronts_have_defined_knees() {
 #[test]
 fn a_bulge_beats_the_ends_and_a_straight_or_concave_front_has_only_ends() {
     let curve = |bend: f64| -> Vec<[f64; 2]> {
-        (0..=10)
-            .map(|i| f64::from(i) / 10.0)
-            .map(|t| [t, 1.0 - t + bend * t * (1.0 - t)])
-            .collect()
+        (0..=10).map(|i| f64::from(i) / 10.0).map(|t| [t, 1.0 - t + bend * t * (1.0 - t)]).collect()
     };
     for pick in PICKS {
         // The ends have larger values on this one, but one-sided ones.
@@ -132,29 +109,13 @@ fn dominated_points_copies_order_and_units_do_not_matter() {
         [-0.0, 10.0],
         [7.0, 1.0],
     ];
-    let matching = [
-        Some(4),
-        None,
-        Some(2),
-        None,
-        Some(1),
-        Some(2),
-        Some(3),
-        None,
-        Some(0),
-        None,
-    ];
+    let matching = [Some(4), None, Some(2), None, Some(1), Some(2), Some(3), None, Some(0), None];
     for pick in PICKS {
         assert_eq!(pick(&front), Some(2));
         assert_eq!(pick(&more), Some(2));
-        assert_eq!(
-            pick(&front.map(|p| [p[0] * 1e-200, 5.0 - 1e200 * -p[1]])),
-            Some(2)
-        );
+        assert_eq!(pick(&front.map(|p| [p[0] * 1e-200, 5.0 - 1e200 * -p[1]])), Some(2));
     }
-    for measure in [marginal_utilities as fn(&[[f64; 2]]) -> Vec<f64>, |p| {
-        angles(p, Neighbours::Two)
-    }] {
+    for measure in [marginal_utilities as fn(&[[f64; 2]]) -> Vec<f64>, |p| angles(p, Neighbours::Two)] {
         let (plain, values) = (measure(&front), measure(&more));
         for (value, place) in values.into_iter().zip(matching) {
             assert_eq!(value, place.map_or(0.0, |i: usize| plain[i]));
@@ -165,28 +126,11 @@ fn dominated_points_copies_order_and_units_do_not_matter() {
 #[test]
 fn nothing_panics_on_anything() {
     let mut rng = Pcg64Mcg::seed_from_u64(2);
-    let odd = [
-        0.0,
-        -0.0,
-        1.0,
-        f64::NAN,
-        f64::INFINITY,
-        f64::MIN,
-        f64::MAX / 2.0,
-        5e-324,
-        1e-308,
-        -1e300,
-    ];
+    let odd = [0.0, -0.0, 1.0, f64::NAN, f64::INFINITY, f64::MIN, f64::MAX / 2.0, 5e-324, 1e-308, -1e300];
     for _ in 0..5000 {
         let n = rng.random_range(0..12);
-        let points: Vec<[f64; 2]> = (0..n)
-            .map(|_| {
-                [
-                    odd[rng.random_range(0..odd.len())],
-                    odd[rng.random_range(0..odd.len())],
-                ]
-            })
-            .collect();
+        let points: Vec<[f64; 2]> =
+            (0..n).map(|_| [odd[rng.random_range(0..odd.len())], odd[rng.random_range(0..odd.len())]]).collect();
         for pick in PICKS {
             assert!(pick(&points).is_none_or(|i| i < n));
         }
@@ -196,9 +140,7 @@ fn nothing_panics_on_anything() {
 
 /// The DO2DK front scaled to [0, 1], at even arc length, as a NSGA-II population of `n` would have it.
 fn do2dk_front(knees: u32, n: usize) -> Vec<[f64; 2]> {
-    let dense: Vec<[f64; 2]> = (0..=200_000)
-        .map(|i| do2dk(&[f64::from(i) / 200_000.0], knees, 0.0))
-        .collect();
+    let dense: Vec<[f64; 2]> = (0..=200_000).map(|i| do2dk(&[f64::from(i) / 200_000.0], knees, 0.0)).collect();
     let front = Front::new(&dense).points;
     let length = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
     let total: f64 = front.windows(2).map(|w| length(w[0], w[1])).sum();
@@ -227,9 +169,7 @@ fn knees_by_chord(front: &[[f64; 2]], reach: usize) -> Vec<[f64; 2]> {
     let depth: Vec<f64> = (0..front.len()).map(depth_at).collect();
     let deepest = depth.iter().copied().fold(0.0, f64::max);
     (reach..front.len() - reach)
-        .filter(|&i| {
-            depth[i] > deepest / 10.0 && depth[i - reach..=i + reach].iter().all(|d| *d <= depth[i])
-        })
+        .filter(|&i| depth[i] > deepest / 10.0 && depth[i - reach..=i + reach].iter().all(|d| *d <= depth[i]))
         .map(|i| front[i])
         .collect()
 }
@@ -245,10 +185,7 @@ fn the_knee_of_do2dk_is_one_of_its_knees() {
             let front = do2dk_front(k, n);
             for (pick, name) in PICKS.into_iter().zip(["nearest", "two", "utility"]) {
                 let [x, y] = front[pick(&front).unwrap()];
-                let distance = knees
-                    .iter()
-                    .map(|p| libm::hypot(p[0] - x, p[1] - y))
-                    .fold(f64::INFINITY, f64::min);
+                let distance = knees.iter().map(|p| libm::hypot(p[0] - x, p[1] - y)).fold(f64::INFINITY, f64::min);
                 println!("K = {k}, n = {n}, {name}: ({x:.3}, {y:.3}), {distance:.4} away");
                 assert!(distance < 0.04, "K = {k}, n = {n}, {name}: {distance}");
             }

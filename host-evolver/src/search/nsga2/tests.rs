@@ -12,9 +12,7 @@ fn naive<const M: usize>(scores: &[Scores<M>]) -> Vec<u32> {
     let mut ranks = vec![u32::MAX; scores.len()];
     let mut rank = 0;
     while ranks.contains(&u32::MAX) {
-        let left: Vec<usize> = (0..scores.len())
-            .filter(|&i| ranks[i] == u32::MAX)
-            .collect();
+        let left: Vec<usize> = (0..scores.len()).filter(|&i| ranks[i] == u32::MAX).collect();
         for &i in &left {
             if !left.iter().any(|&j| scores[j].dominates(&scores[i])) {
                 ranks[i] = rank;
@@ -41,11 +39,7 @@ fn nasty<const M: usize>(rng: &mut Pcg64Mcg, n: usize) -> Vec<Scores<M>> {
     (0..n)
         .map(|_| Scores {
             objectives: [(); M].map(|()| number(rng)),
-            violation: if rng.random_bool(0.6) {
-                0.0
-            } else {
-                number(rng)
-            },
+            violation: if rng.random_bool(0.6) { 0.0 } else { number(rng) },
         })
         .collect()
 }
@@ -89,23 +83,15 @@ fn dominance_is_a_strict_partial_order() {
 
 #[test]
 fn debs_rule() {
-    let s = |objectives, violation| Scores {
-        objectives,
-        violation,
-    };
+    let s = |objectives, violation| Scores { objectives, violation };
     assert!(s([9.0], 0.0).dominates(&s([1.0], 0.1)));
     assert!(s([9.0], 0.1).dominates(&s([1.0], 0.2)));
     assert!(s([1.0], 0.2).dominates(&s([9.0], 0.2)));
     assert!(s([9.0], INF).dominates(&s([INF], f64::NAN)));
     assert!(s([9.0], 0.2).dominates(&s([1.0], f64::NAN)));
-    assert!(
-        !s([9.0], -1.0).dominates(&s([1.0], 0.0)),
-        "all feasible ones are equally feasible"
-    );
+    assert!(!s([9.0], -1.0).dominates(&s([1.0], 0.0)), "all feasible ones are equally feasible");
     assert!(s([1e300], 0.0).dominates(&s([f64::NAN], 0.0)));
-    assert!(
-        !s([0.0], -0.0).dominates(&s([-0.0], 0.0)) && !s([-0.0], 0.0).dominates(&s([0.0], 0.0))
-    );
+    assert!(!s([0.0], -0.0).dominates(&s([-0.0], 0.0)) && !s([-0.0], 0.0).dominates(&s([0.0], 0.0)));
     assert!(s([0.0], -1.0).is_feasible() && !s([0.0], f64::NAN).is_feasible());
 }
 
@@ -121,26 +107,13 @@ fn crowding_by_hand() {
     let scores = feasible(&[[0.0, 8.0], [1.0, 6.0], [2.0, 2.0], [4.0, 0.0], [5.0, 9.0]]);
     let ranks = sort(&scores);
     assert_eq!(ranks, [0, 0, 0, 0, 1]);
-    assert_eq!(
-        crowding(&scores, &ranks),
-        [INF, 2.0 / 4.0 + 6.0 / 8.0, 3.0 / 4.0 + 6.0 / 8.0, INF, INF]
-    );
+    assert_eq!(crowding(&scores, &ranks), [INF, 2.0 / 4.0 + 6.0 / 8.0, 3.0 / 4.0 + 6.0 / 8.0, INF, INF]);
 }
 
 #[test]
 fn copies_share_one_place() {
-    let scores = feasible(&[
-        [4.0, 0.0],
-        [1.0, 4.0],
-        [0.0, 8.0],
-        [1.0, 4.0],
-        [0.0, 8.0],
-        [4.0, 0.0],
-    ]);
-    assert_eq!(
-        crowding(&scores, &sort(&scores)),
-        [INF, 2.0, INF, 0.0, 0.0, 0.0]
-    );
+    let scores = feasible(&[[4.0, 0.0], [1.0, 4.0], [0.0, 8.0], [1.0, 4.0], [0.0, 8.0], [4.0, 0.0]]);
+    assert_eq!(crowding(&scores, &sort(&scores)), [INF, 2.0, INF, 0.0, 0.0, 0.0]);
     assert_eq!(survivors(&scores, 3), [0, 2, 1]);
 }
 
@@ -152,10 +125,7 @@ fn crowding_is_never_nan_and_ends_are_infinite() {
         let standings = standings(&scores);
         assert!(standings.iter().all(|s| s.crowding >= 0.0));
         for rank in 0..=standings.iter().map(|s| s.rank).max().unwrap_or(0) {
-            let infinite = standings
-                .iter()
-                .filter(|s| s.rank == rank && s.crowding == INF)
-                .count();
+            let infinite = standings.iter().filter(|s| s.rank == rank && s.crowding == INF).count();
             assert!((1..=2).contains(&infinite), "{infinite}");
         }
     }
@@ -165,10 +135,7 @@ fn crowding_is_never_nan_and_ends_are_infinite() {
 fn crowding_does_not_depend_on_units() {
     let mut rng = Pcg64Mcg::seed_from_u64(4);
     let points: Vec<[f64; 2]> = (0..50).map(|_| [rng.random(), rng.random()]).collect();
-    let scaled: Vec<[f64; 2]> = points
-        .iter()
-        .map(|p| [p[0] * 1024.0, p[1] / 64.0])
-        .collect();
+    let scaled: Vec<[f64; 2]> = points.iter().map(|p| [p[0] * 1024.0, p[1] / 64.0]).collect();
     assert_eq!(standings(&feasible(&points)), standings(&feasible(&scaled)));
 }
 
@@ -186,11 +153,7 @@ fn survivors_are_best_first_and_never_more_than_there_are() {
         }
         let worst = kept.last().map(|&i| standings[i]);
         let dropped = (0..40).filter(|i| !kept.contains(i));
-        assert!(
-            dropped
-                .into_iter()
-                .all(|i| worst.is_none_or(|w| w.cmp_best_first(&standings[i]).is_le()))
-        );
+        assert!(dropped.into_iter().all(|i| worst.is_none_or(|w| w.cmp_best_first(&standings[i]).is_le())));
     }
     assert!(survivors::<2>(&[], 3).is_empty());
 }
@@ -200,13 +163,7 @@ fn tournaments_prefer_the_better_and_toss_for_the_rest() {
     let place = |rank, crowding| Standing { rank, crowding };
     let mut rng = Pcg64Mcg::seed_from_u64(6);
     let mut wins = [0; 5];
-    let standings = [
-        place(1, INF),
-        place(0, 1.0),
-        place(0, 2.0),
-        place(0, 1.0),
-        place(2, INF),
-    ];
+    let standings = [place(1, INF), place(0, 1.0), place(0, 2.0), place(0, 1.0), place(2, INF)];
     for _ in 0..10_000 {
         wins[tournament(&mut rng, &standings)] += 1;
     }
@@ -219,10 +176,7 @@ fn tournaments_prefer_the_better_and_toss_for_the_rest() {
 
 #[test]
 fn in_a_round_of_tournaments_everyone_enters_once() {
-    let place = |rank| Standing {
-        rank,
-        crowding: 1.0,
-    };
+    let place = |rank| Standing { rank, crowding: 1.0 };
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let standings: Vec<Standing> = (0..10).map(place).collect();
     for _ in 0..100 {
@@ -242,9 +196,7 @@ fn equal_seed_equal_winners() {
     let scores = nasty::<2>(&mut Pcg64Mcg::seed_from_u64(8), 40);
     let run = || {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
-        (0..1000)
-            .map(|_| tournament(&mut rng, &standings(&scores)))
-            .collect::<Vec<_>>()
+        (0..1000).map(|_| tournament(&mut rng, &standings(&scores))).collect::<Vec<_>>()
     };
     assert_eq!(run(), run());
 }

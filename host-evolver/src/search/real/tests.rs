@@ -30,10 +30,7 @@ fn median_hypervolume(problem: fn(&[f64]) -> [f64; 2]) -> f64 {
         })
         .collect();
     volumes.sort_by(f64::total_cmp);
-    println!(
-        "median {:.5}, {:.5} to {:.5}",
-        volumes[7], volumes[0], volumes[14]
-    );
+    println!("median {:.5}, {:.5} to {:.5}", volumes[7], volumes[0], volumes[14]);
     volumes[7]
 }
 
@@ -70,10 +67,7 @@ fn equal_seed_equal_log_and_exact_budgets() {
     assert!(log.iter().all(|x| bounds.contain(x)));
     for budget in [1, 99, 100, 101, 257] {
         let (part, population) = run(budget, 1);
-        assert!(
-            part == log[..budget],
-            "a smaller budget only cuts the run short: {budget}"
-        );
+        assert!(part == log[..budget], "a smaller budget only cuts the run short: {budget}");
         assert_eq!(population.len(), budget.min(100));
     }
 }
@@ -85,51 +79,26 @@ fn infeasible_and_nan_regions_are_left() {
     let settings = Settings::new(20, 2000, crossover, mutation).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(3);
     let population = minimise(&settings, &unit_box(2), &mut rng, |x| Scores {
-        objectives: [
-            x[0],
-            if x[1] > 0.9 {
-                f64::NAN
-            } else {
-                1.0 - x[0] + x[1]
-            },
-        ],
+        objectives: [x[0], if x[1] > 0.9 { f64::NAN } else { 1.0 - x[0] + x[1] }],
         violation: (0.3 - x[0]).max(0.0),
     });
     for individual in population {
-        assert!(
-            individual.scores.is_feasible() && individual.x[1] < 0.2,
-            "{individual:?}"
-        );
+        assert!(individual.scores.is_feasible() && individual.x[1] < 0.2, "{individual:?}");
     }
 }
 
 #[test]
 fn bad_arguments_are_rejected() {
     for p in [-0.1, 1.1, f64::NAN] {
-        assert!(matches!(
-            Sbx::new(p, 15.0),
-            Err(SettingsError::Probability(_))
-        ));
-        assert!(matches!(
-            PolynomialMutation::new(p, 15.0),
-            Err(SettingsError::Probability(_))
-        ));
+        assert!(matches!(Sbx::new(p, 15.0), Err(SettingsError::Probability(_))));
+        assert!(matches!(PolynomialMutation::new(p, 15.0), Err(SettingsError::Probability(_))));
     }
     for eta in [-1.0, f64::INFINITY, f64::NAN] {
         assert!(matches!(Sbx::new(0.9, eta), Err(SettingsError::Index(_))));
-        assert!(matches!(
-            PolynomialMutation::new(0.9, eta),
-            Err(SettingsError::Index(_))
-        ));
+        assert!(matches!(PolynomialMutation::new(0.9, eta), Err(SettingsError::Index(_))));
     }
-    let (sbx, pm) = (
-        Sbx::new(0.9, 15.0).unwrap(),
-        PolynomialMutation::new(0.1, 20.0).unwrap(),
-    );
-    assert_eq!(
-        Settings::new(1, 10, sbx, pm),
-        Err(SettingsError::Population(1))
-    );
+    let (sbx, pm) = (Sbx::new(0.9, 15.0).unwrap(), PolynomialMutation::new(0.1, 20.0).unwrap());
+    assert_eq!(Settings::new(1, 10, sbx, pm), Err(SettingsError::Population(1)));
     assert_eq!(Settings::new(2, 0, sbx, pm), Err(SettingsError::Budget));
 }
 
@@ -146,21 +115,12 @@ fn crossover_keeps_the_mean_and_the_box() {
         unchanged += usize::from(a == [1.0] && b == [3.0]);
         inside += usize::from(a[0].min(b[0]) > 1.0);
     }
-    assert!(
-        (4800..5200).contains(&unchanged),
-        "half of the coordinates: {unchanged}"
-    );
-    assert!(
-        (2350..2650).contains(&inside),
-        "contracting as often as expanding: {inside}"
-    );
+    assert!((4800..5200).contains(&unchanged), "half of the coordinates: {unchanged}");
+    assert!((2350..2650).contains(&inside), "contracting as often as expanding: {inside}");
 
     // In a tight box no child leaves, and fixed coordinates stay.
     let bounds = Bounds::new(vec![(0.0, 1.0), (0.0, 1.0), (2.0, 2.0)]).unwrap();
-    let (sbx, pm) = (
-        Sbx::new(1.0, 0.0).unwrap(),
-        PolynomialMutation::new(1.0, 0.0).unwrap(),
-    );
+    let (sbx, pm) = (Sbx::new(1.0, 0.0).unwrap(), PolynomialMutation::new(1.0, 0.0).unwrap());
     for _ in 0..10_000 {
         let (mut a, mut b) = ([0.0, 0.4, 2.0], [1.0, 0.6, 2.0]);
         sbx.cross(&mut rng, &bounds, &mut a, &mut b);
@@ -185,8 +145,5 @@ fn mutation_is_centred_and_as_frequent_as_asked() {
     assert!((9_600..10_400).contains(&changed), "{changed}");
     // The mean of |δ| is 1 / (η + 2).
     let mean = size / changed as f64;
-    assert!(
-        (mean - 1.0 / 22.0).abs() < 0.002 && (sum / changed as f64).abs() < 0.002,
-        "{mean} {sum}"
-    );
+    assert!((mean - 1.0 / 22.0).abs() < 0.002 && (sum / changed as f64).abs() < 0.002, "{mean} {sum}");
 }

@@ -98,9 +98,13 @@ impl Axis {
         }
     }
 
-    /// The chart coordinate of a value.
+    /// The chart coordinate of a value; 0 has none on a logarithmic axis and is put at its lower end.
     pub fn at(&self, value: f64) -> f64 {
-        if self.log { libm::log10(value) } else { value }
+        match self.log {
+            true if value > 0.0 => libm::log10(value).max(self.lo),
+            true => self.lo,
+            false => value,
+        }
     }
 
     /// The words at a chart coordinate: none where there is no tick.
@@ -165,10 +169,16 @@ pub(super) struct Chart {
 impl Chart {
     /// Where a value lies on paper.
     pub fn place(&self, x: f64, y: f64) -> (f64, f64) {
-        let share = |axis: &Axis, v: f64| (axis.at(v) - axis.lo) / (axis.hi - axis.lo);
+        self.on_paper((self.x.at(x), self.y.at(y)))
+    }
+
+    /// Where a chart coordinate lies on paper.
+    pub fn on_paper(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        let share = |axis: &Axis, v: f64| (v - axis.lo) / (axis.hi - axis.lo);
+        let (right, up) = (share(&self.x, x), share(&self.y, y));
         (
-            self.rect.x + share(&self.x, x) * self.rect.w,
-            self.rect.bottom() - share(&self.y, y) * self.rect.h,
+            self.rect.x + right * self.rect.w,
+            self.rect.bottom() - up * self.rect.h,
         )
     }
 

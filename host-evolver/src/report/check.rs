@@ -49,7 +49,7 @@ pub(super) fn read(svg: &str) -> Document {
             assert_eq!(name, opened);
             if name == "text" || name == "title" {
                 let text = document.texts.last_mut().unwrap();
-                *text = text.trim_end_matches('\n').to_owned();
+                *text = text.trim_matches('\n').to_owned();
             }
         } else {
             let name = tag.split([' ', '/']).next().unwrap().to_owned();

@@ -76,23 +76,65 @@ impl std::fmt::Display for FigureError {
 
 impl std::error::Error for FigureError {}
 
-/// Rejects the first number of `values` that is NaN or infinite.
+/// The largest number a figure takes, either sign: beyond it sums and scales could overflow.
+const LARGEST: f64 = 1e9;
+
+/// Rejects the first number of `values` that is NaN, infinite or absurdly large.
 pub(super) fn finite(
     what: &'static str,
     values: impl IntoIterator<Item = f64>,
 ) -> Result<(), FigureError> {
-    match values.into_iter().position(|v| !v.is_finite()) {
-        Some(index) => Err(FigureError::NotFinite { what, index }),
+    for (index, value) in values.into_iter().enumerate() {
+        if !value.is_finite() {
+            return Err(FigureError::NotFinite { what, index });
+        }
+        if value.abs() > LARGEST {
+            return Err(FigureError::OutOfRange {
+                what,
+                index,
+                expected: "between -1e9 and 1e9",
+            });
+        }
+    }
+    Ok(())
+}
+
+/// [`finite`] for the points of lines; the index is the line's.
+pub(super) fn finite_lines(what: &'static str, lines: &[Vec<[f64; 2]>]) -> Result<(), FigureError> {
+    for (index, line) in lines.iter().enumerate() {
+        finite(what, line.iter().flatten().copied()).map_err(|e| e.within(what, index))?;
+    }
+    Ok(())
+}
+
+/// Rejects the first finite number of `values` outside `lo..=hi`.
+pub(super) fn within(
+    what: &'static str,
+    values: impl IntoIterator<Item = f64>,
+    (lo, hi): (f64, f64),
+    expected: &'static str,
+) -> Result<(), FigureError> {
+    match values.into_iter().position(|v| v < lo || v > hi) {
+        Some(index) => Err(FigureError::OutOfRange {
+            what,
+            index,
+            expected,
+        }),
         None => Ok(()),
     }
 }
 
-/// Rejects the first point of any of `lines` with a coordinate that is NaN or infinite; the index is the line's.
-pub(super) fn finite_lines(what: &'static str, lines: &[Vec<[f64; 2]>]) -> Result<(), FigureError> {
-    finite(
-        what,
-        lines
-            .iter()
-            .map(|line| line.iter().flatten().fold(0.0, |sum, v| sum + v * 0.0)),
-    )
+impl FigureError {
+    /// The same fault, said of the item that holds the number.
+    pub(super) fn within(self, what: &'static str, index: usize) -> Self {
+        match self {
+            Self::NotFinite { .. } => Self::NotFinite { what, index },
+            Self::OutOfRange { expected, .. } => Self::OutOfRange {
+                what,
+                index,
+                expected,
+            },
+            other => other,
+        }
+    }
 }

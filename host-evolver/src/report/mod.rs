@@ -15,15 +15,22 @@
 
 mod axes;
 mod error;
+mod front;
 mod grn;
+mod grn_draw;
 mod grn_layout;
+mod legend;
 mod map;
+mod paint;
 mod pareto;
 mod pattern;
+mod place;
 pub mod style;
 mod svg;
 mod text;
 mod trace;
+mod trace_map;
+mod trace_strips;
 mod tree;
 
 pub use error::FigureError;

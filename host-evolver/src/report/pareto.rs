@@ -1,10 +1,16 @@
 //! The front: complexity against pattern error, with knees.
 
-use super::axes::{Axis, Chart, Line};
-use super::error::{FigureError, finite};
+use super::axes::{Chart, Line};
+use super::error::{FigureError, finite, within};
+use super::front::{Label, complexity, error_axis, front, staircase};
+use super::legend::{Key, legend};
+use super::place::Taken;
 use super::style::{COLUMN, DATA, GREY, INK, LABEL, SMALL, THIN, VERMILLION};
-use super::svg::{Anchor, Font, Key, Mark, Paint, Rect, Svg, legend};
-use super::text::{width, wrap};
+use super::svg::{Anchor, Font, Mark, Paint, Rect, Svg};
+use super::text::width;
+
+/// What an f2 can be: the formula's sums of sigmoids stay below 3.
+const F2: (f64, f64) = (0.0, 1000.0);
 
 /// By which measure a point is a knee.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +28,7 @@ impl KneeKind {
         match self {
             Self::Angle => "knee (angle)",
             Self::Utility => "knee (utility)",
-            Self::Both => "knee",
+            Self::Both => "knee (both)",
         }
     }
 
@@ -64,22 +70,35 @@ pub struct Reference {
 /// logarithmic scale where it spans more than a factor of ten.
 ///
 /// # Errors
-/// No feasible point, an f2 that is not finite or below 0, no nodes.
+/// No feasible point, an f2 that is not finite or not in 0 to 1000, no nodes, an infeasible knee.
 pub fn pareto(
     points: &[ParetoPoint],
     title: &str,
     reference: Option<&Reference>,
 ) -> Result<String, FigureError> {
     finite("f2 of point", points.iter().map(|p| p.f2))?;
-    finite("f2 of the reference", reference.iter().map(|r| r.f2))?;
-    let bad = |p: &ParetoPoint| p.f2 < 0.0 || p.nodes == 0;
+    within(
+        "f2 of point",
+        points.iter().map(|p| p.f2),
+        F2,
+        "from 0 to 1000",
+    )?;
+    let expected = "of at least one node, and feasible if it is a knee";
+    let bad = |p: &ParetoPoint| p.nodes == 0 || (p.knee.is_some() && !p.feasible);
     if let Some(index) = points.iter().position(bad) {
         return Err(FigureError::OutOfRange {
             what: "point",
             index,
-            expected: "of at least one node and f2 0",
+            expected,
         });
     }
+    finite("f2 of reference", reference.map(|r| r.f2))?;
+    within(
+        "f2 of reference",
+        reference.map(|r| r.f2),
+        F2,
+        "from 0 to 1000",
+    )?;
     let front = front(points);
     if front.is_empty() {
         return Err(FigureError::Empty {
@@ -124,158 +143,63 @@ pub fn pareto(
         });
     }
     chart.draw(&mut svg, &lines)?;
-    let place = |p: &ParetoPoint| chart.place(f64::from(p.nodes), p.f2.max(floor(points)));
-    for (i, p) in points
-        .iter()
-        .enumerate()
-        .filter(|(i, _)| !front.contains(i))
-    {
-        let _ = i;
-        let (mark, r, paint) = other_look(p.feasible);
-        svg.mark(mark, place(p), r, &paint);
-    }
-    let mut taken: Vec<(Rect, f64)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            let (x, y) = place(p);
-            (
-                Rect::new(x - 3.5, y - 3.5, 7.0, 7.0),
-                if front.contains(&i) { 12.0 } else { 1.0 },
-            )
-        })
-        .collect();
+    let mut taken = Taken::new(rect);
     for pair in stairs.windows(2) {
-        let on_paper = |c: (f64, f64)| {
-            let (x, y) = (c.0 - chart.x.lo, c.1 - chart.y.lo);
-            (
-                rect.x + x / (chart.x.hi - chart.x.lo) * rect.w,
-                rect.bottom() - y / (chart.y.hi - chart.y.lo) * rect.h,
-            )
-        };
-        let (a, b) = (on_paper(pair[0]), on_paper(pair[1]));
-        let (x, y) = (a.0.min(b.0) - 1.0, a.1.min(b.1) - 1.0);
-        taken.push((
-            Rect::new(x, y, (a.0 - b.0).abs() + 2.0, (a.1 - b.1).abs() + 2.0),
-            6.0,
-        ));
+        taken.add_line(chart.on_paper(pair[0]), chart.on_paper(pair[1]), 8.0);
+    }
+    let place = |p: &ParetoPoint| chart.place(f64::from(p.nodes), p.f2);
+    for (i, p) in points.iter().enumerate() {
+        if front.contains(&i) {
+            taken.add_mark(place(p), 3.5, 12.0);
+        } else {
+            let (mark, r, paint) = other_look(p.feasible);
+            svg.mark(mark, place(p), r, &paint);
+            taken.add_mark(place(p), 2.2, 5.0);
+        }
     }
     if let Some(r) = reference {
-        let y = chart.place(chart.x.lo, r.f2).1;
-        let w = width(&r.label, SMALL, false);
-        svg.text(
-            &r.label,
-            (rect.right() - 2.0, y - 2.5),
-            &Font::new(SMALL, Anchor::End).colour(GREY),
-        );
-        taken.push((Rect::new(rect.right() - 2.0 - w, y - 9.0, w, 11.0), 12.0));
-        taken.push((Rect::new(rect.x, y - 1.0, rect.w, 2.0), 6.0));
+        name_reference(&mut svg, &chart, r, &mut taken);
     }
     for &i in &front {
         let p = &points[i];
         svg.open(if p.knee.is_some() { "knee" } else { "front" }, &p.label);
         let (mark, r, paint) = front_look(p.knee);
         svg.mark(mark, place(p), r, &paint);
-        if p.knee.is_some() {
-            let label = Label::fit(&p.label, place(p), &rect, &taken);
-            label.draw(&mut svg, place(p));
-            taken.push((label.rect, 30.0));
-        }
         svg.close();
+    }
+    // The most complex first: its label can go to the right, which leaves the rest room above.
+    for p in front
+        .iter()
+        .rev()
+        .map(|&i| &points[i])
+        .filter(|p| p.knee.is_some())
+    {
+        if let Some(label) = Label::fit(&p.label, place(p), &taken) {
+            label.draw(&mut svg);
+            label.take(&mut taken);
+        }
     }
     Ok(svg.finish(COLUMN, rect.bottom() + 28.0))
 }
 
-/// Indices of the feasible points that no other dominates, one for each complexity, simplest first.
-fn front(points: &[ParetoPoint]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].feasible).collect();
-    let knee_last = |i: usize| points[i].knee.is_none();
-    order.sort_by(|&a, &b| {
-        let (p, q) = (&points[a], &points[b]);
-        p.nodes
-            .cmp(&q.nodes)
-            .then(p.f2.total_cmp(&q.f2))
-            .then(knee_last(a).cmp(&knee_last(b)))
-            .then(a.cmp(&b))
-    });
-    let mut best = f64::INFINITY;
-    order.retain(|&i| {
-        let keep = points[i].f2 < best;
-        best = best.min(points[i].f2);
-        keep
-    });
-    // A knee the caller chose is shown even if this rule would not have it.
-    for i in (0..points.len()).filter(|&i| points[i].knee.is_some() && points[i].feasible) {
-        if !order.contains(&i) {
-            order.push(i);
-        }
+/// Writes what a reference line is below or above one of its ends.
+fn name_reference(svg: &mut Svg, chart: &Chart, reference: &Reference, taken: &mut Taken) {
+    let y = chart.place(chart.x.lo, reference.f2).1;
+    let w = width(&reference.label, SMALL, false) + 2.0;
+    let (left, right) = (chart.rect.x + 1.0, chart.rect.right() - w - 1.0);
+    let places = [
+        (right, y + 1.2),
+        (left, y + 1.2),
+        (right, y - 10.0),
+        (left, y - 10.0),
+    ];
+    let places = places.map(|(x, top)| (Rect::new(x, top, w, 8.8), 0.0));
+    taken.add_line((chart.rect.x, y), (chart.rect.right(), y), 6.0);
+    if let Some(rect) = taken.cheapest(places) {
+        let font = Font::new(SMALL, Anchor::Start).colour(GREY);
+        svg.text(&reference.label, (rect.x + 1.0, rect.y + 6.9), &font);
+        taken.add(rect, 20.0);
     }
-    order
-}
-
-/// The least f2 above 0 that is drawn: a logarithm has no place for 0.
-fn floor(points: &[ParetoPoint]) -> f64 {
-    points
-        .iter()
-        .map(|p| p.f2)
-        .filter(|f| *f > 0.0)
-        .fold(f64::INFINITY, f64::min)
-        .min(1.0)
-        / 2.0
-}
-
-fn complexity(points: &[ParetoPoint]) -> Axis {
-    let nodes = points.iter().map(|p| f64::from(p.nodes));
-    let (lo, hi) = nodes.fold((f64::INFINITY, 0.0_f64), |(lo, hi), n| {
-        (lo.min(n), hi.max(n))
-    });
-    let odd = points.iter().all(|p| p.nodes % 2 == 1);
-    let least = libm::ceil((hi - lo) / 11.0).max(1.0);
-    let mut step = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|s| *s >= least)
-        .unwrap_or(least);
-    let mut axis = Axis::stepped(lo - 0.7, hi + 0.7, step);
-    if odd && step <= 2.0 {
-        step = 2.0;
-        let count = ((hi - lo) / step) as usize;
-        axis.ticks = (0..=count)
-            .map(|i| lo + i as f64 * step)
-            .map(|n| (n, format!("{n:.0}")))
-            .collect();
-    }
-    axis
-}
-
-fn error_axis(points: &[ParetoPoint], reference: Option<&Reference>) -> Axis {
-    let values = || points.iter().map(|p| p.f2).chain(reference.map(|r| r.f2));
-    let hi = values().fold(0.0, f64::max);
-    let lo = values()
-        .map(|f| f.max(floor(points)))
-        .fold(f64::INFINITY, f64::min);
-    if hi > 10.0 * lo && lo > 0.0 {
-        return Axis::logarithmic(lo / libm::pow(hi / lo, 0.08), hi * libm::pow(hi / lo, 0.10));
-    }
-    let lo = values().fold(f64::INFINITY, f64::min);
-    let margin = (hi - lo).max(hi * 0.1).max(1e-6) * 0.12;
-    Axis::linear((lo - margin).max(0.0), hi + 1.5 * margin, 5.0)
-}
-
-/// The staircase in chart coordinates, from the simplest solution to the right edge.
-fn staircase(points: &[ParetoPoint], front: &[usize], chart: &Chart) -> Vec<(f64, f64)> {
-    let mut out: Vec<(f64, f64)> = Vec::new();
-    let mut best = f64::INFINITY;
-    for p in front.iter().map(|&i| &points[i]).filter(|p| p.feasible) {
-        let (x, y) = (f64::from(p.nodes), chart.y.at(p.f2.max(floor(points))));
-        if y >= best {
-            continue;
-        }
-        out.push((x, if best.is_finite() { best } else { chart.y.hi }));
-        out.push((x, y));
-        best = y;
-    }
-    out.push((chart.x.hi, best));
-    out
 }
 
 fn other_look(feasible: bool) -> (Mark, f64, Paint) {
@@ -304,10 +228,15 @@ fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> 
     if front.iter().any(|&i| points[i].knee.is_none()) {
         add(front_look(None), "non-dominated");
     }
-    for kind in [KneeKind::Both, KneeKind::Angle, KneeKind::Utility] {
-        if front.iter().any(|&i| points[i].knee == Some(kind)) {
-            add(front_look(Some(kind)), kind.words());
-        }
+    let kinds = [KneeKind::Both, KneeKind::Angle, KneeKind::Utility];
+    let present = |kind: &KneeKind| front.iter().any(|&i| points[i].knee == Some(*kind));
+    let present: Vec<KneeKind> = kinds.into_iter().filter(present).collect();
+    for &kind in &present {
+        let only = kind == KneeKind::Both && present.len() == 1;
+        add(
+            front_look(Some(kind)),
+            if only { "knee" } else { kind.words() },
+        );
     }
     let others = || {
         points
@@ -323,93 +252,6 @@ fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> 
         add(other_look(false), "infeasible");
     }
     entries
-}
-
-/// A knee's expression and where it stands.
-struct Label {
-    lines: Vec<String>,
-    rect: Rect,
-}
-
-impl Label {
-    /// The place among those around `at`, above and to the right first, that covers least.
-    fn fit(text: &str, at: (f64, f64), frame: &Rect, taken: &[(Rect, f64)]) -> Self {
-        let mut best: Option<(f64, Self)> = None;
-        for limit in [400.0, 130.0, 95.0] {
-            let lines = wrap(text, SMALL, limit);
-            let w = lines
-                .iter()
-                .map(|l| width(l, SMALL, false))
-                .fold(0.0, f64::max)
-                + 3.0;
-            let h = lines.len() as f64 * 9.0 + 2.0;
-            for (ring, gap) in [6.0, 13.0, 22.0, 34.0, 48.0, 64.0, 80.0]
-                .into_iter()
-                .enumerate()
-            {
-                let around = [
-                    (at.0 + gap * 0.8, at.1 - gap - h * 0.8),
-                    (at.0 + gap, at.1 - h / 2.0),
-                    (at.0 + 3.0, at.1 - gap - h),
-                    (at.0 - w / 2.0, at.1 - gap - h),
-                    (at.0 - w - 3.0, at.1 + gap),
-                    (at.0 - gap - w, at.1 - h / 2.0),
-                    (at.0 - w / 2.0, at.1 + gap),
-                    (at.0 + gap * 0.8, at.1 + gap),
-                ];
-                for (turn, (x, y)) in around.into_iter().enumerate() {
-                    let rect = Rect::new(x, y, w, h);
-                    let outside = if frame.holds(&rect) { 0.0 } else { 5000.0 };
-                    let covered: f64 = taken
-                        .iter()
-                        .map(|(r, weight)| r.overlap(&rect) * weight)
-                        .sum();
-                    let cost = covered
-                        + outside
-                        + ring as f64 * 7.0
-                        + turn as f64
-                        + lines.len() as f64 * 3.0;
-                    if best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                        best = Some((
-                            cost,
-                            Self {
-                                lines: lines.clone(),
-                                rect,
-                            },
-                        ));
-                    }
-                }
-            }
-        }
-        best.map(|(_, label)| label).unwrap_or(Self {
-            lines: vec![],
-            rect: Rect::new(at.0, at.1, 0.0, 0.0),
-        })
-    }
-
-    fn draw(&self, svg: &mut Svg, at: (f64, f64)) {
-        let r = &self.rect;
-        let near = (
-            at.0.clamp(r.x, r.right()),
-            at.1.clamp(r.y + 1.0, r.bottom() - 1.0),
-        );
-        let gap = libm::hypot(near.0 - at.0, near.1 - at.1);
-        if gap > 9.0 {
-            let start = (
-                at.0 + (near.0 - at.0) * 4.5 / gap,
-                at.1 + (near.1 - at.1) * 4.5 / gap,
-            );
-            svg.line(start, near, &Paint::stroke(GREY, 0.5));
-        }
-        svg.rect(r, 1.5, &Paint::fill("#FFFFFF"));
-        for (i, line) in self.lines.iter().enumerate() {
-            svg.text(
-                line,
-                (r.x + 1.5, r.y + 8.0 + 9.0 * i as f64),
-                &Font::new(SMALL, Anchor::Start),
-            );
-        }
-    }
 }
 
 #[cfg(test)]

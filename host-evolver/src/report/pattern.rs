@@ -1,11 +1,12 @@
 //! The pattern along the targets' path, one small map for each moment.
 
 use super::error::{FigureError, finite, finite_lines};
+use super::legend::{Key, legend};
 use super::map::{View, Window};
 use super::style::{
     BLUE, BLUE_TINT, COLUMN, GREEN, GREY, INK, LABEL, PAGE, PAGE_HEIGHT, SMALL, THIN, VERMILLION,
 };
-use super::svg::{Anchor, Font, Key, Mark, Paint, Rect, Svg, legend};
+use super::svg::{Anchor, Font, Mark, Paint, Rect, Svg};
 use super::text::width;
 
 /// A target of the swarm.
@@ -49,15 +50,15 @@ pub struct PatternFigure {
     pub columns: Option<usize>,
 }
 
-/// Panels that one figure shows at most: one for each letter.
-const PANELS: usize = 26;
+/// Panels that one figure shows at most: five rows of five.
+const PANELS: usize = 25;
 const GAP: f64 = 8.0;
 const CAPTION: f64 = 12.0;
 
 /// Draws the moments in rows, (a), (b), (c), …, all to one scale unless their windows differ in size.
 ///
 /// # Errors
-/// No panels, more than 26, coordinates that are not finite, an empty region or window.
+/// No panels, more than 25, coordinates that are not finite, an empty region or window.
 pub fn pattern(figure: &PatternFigure) -> Result<String, FigureError> {
     check(figure)?;
     let windows: Vec<Window> = figure
@@ -125,10 +126,7 @@ fn check(figure: &PatternFigure) -> Result<(), FigureError> {
         panel
             .window
             .map_or(Ok(()), |w| w.check("window of panel", index))?;
-        let in_panel = |_| FigureError::NotFinite {
-            what: "a coordinate of panel",
-            index,
-        };
+        let in_panel = |e: FigureError| e.within("a coordinate of panel", index);
         for lines in [&panel.walls, &panel.contours, &panel.leak_outlines] {
             finite_lines("", lines).map_err(in_panel)?;
         }
@@ -138,17 +136,22 @@ fn check(figure: &PatternFigure) -> Result<(), FigureError> {
     Ok(())
 }
 
-/// Panels a row: few empty places, rows that fit the page, panels that are neither tiny nor huge.
+/// Panels a row: as few empty places as can be had on as little of a page.
 fn columns(count: usize, shape: f64) -> usize {
     if count <= 3 {
         return count;
     }
-    let fits = |c: &usize| {
-        let w = (PAGE - GAP * (*c as f64 - 1.0)) / *c as f64;
-        count.div_ceil(*c) as f64 * (w * shape + CAPTION + GAP) < PAGE_HEIGHT
+    let cost = |c: usize| {
+        let w = (PAGE - GAP * (c as f64 - 1.0)) / c as f64;
+        let rows = count.div_ceil(c);
+        let height = rows as f64 * (w * shape + CAPTION + GAP);
+        let too_high = if height > PAGE_HEIGHT { 100.0 } else { 0.0 };
+        (c * rows - count) as f64 + height / 200.0 + too_high
     };
-    let empty = |c: &usize| c * count.div_ceil(*c) - count;
-    (3..=5).rev().filter(fits).min_by_key(empty).unwrap_or(5)
+    (3..=5)
+        .rev()
+        .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))
+        .unwrap_or(5)
 }
 
 fn draw_panel(
@@ -212,8 +215,7 @@ pub(super) fn mark_target(svg: &mut Svg, at: (f64, f64), enclosed: bool) {
     if enclosed {
         svg.circle(at, 2.1, &Paint::stroke("#FFFFFF", 0.5).filled(GREEN));
     } else {
-        svg.circle(at, 4.0, &Paint::stroke(VERMILLION, 1.0).filled("#FFFFFF"));
-        svg.mark(Mark::Cross, at, 2.1, &Paint::stroke(VERMILLION, 1.2));
+        svg.mark(Mark::RingedCross, at, 2.1, &Paint::stroke(VERMILLION, 1.2));
     }
 }
 
@@ -237,7 +239,10 @@ fn entries(figure: &PatternFigure) -> Vec<(Key, &'static str)> {
     }
     if any(&|p| p.targets.iter().any(|t| !t.enclosed)) {
         let cross = Paint::stroke(VERMILLION, 1.2);
-        out.push((Key::Mark(Mark::Cross, 2.1, cross), "target, not enclosed"));
+        out.push((
+            Key::Mark(Mark::RingedCross, 1.7, cross),
+            "target, not enclosed",
+        ));
     }
     if any(&|p| !p.leak_outlines.is_empty()) {
         out.push((Key::Line(leak()), "leak"));
@@ -303,7 +308,7 @@ mod tests {
     #[test]
     fn rows_are_full_and_fit_the_page() {
         let chosen = [4, 5, 6, 8, 9, 15, 16, 20, 25].map(|count| columns(count, 1.0));
-        assert_eq!(chosen, [4, 5, 3, 4, 3, 5, 4, 5, 5]);
+        assert_eq!(chosen, [4, 5, 3, 4, 5, 5, 4, 5, 5]);
     }
 
     #[test]
@@ -328,8 +333,8 @@ mod tests {
             Err(FigureError::Empty { what: "panels" })
         );
         assert!(matches!(
-            pattern(&figure(27)),
-            Err(FigureError::TooMany { found: 27, .. })
+            pattern(&figure(26)),
+            Err(FigureError::TooMany { found: 26, .. })
         ));
         let mut bad = figure(3);
         bad.panels[2].contours[0][1][0] = f64::NAN;

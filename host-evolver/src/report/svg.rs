@@ -1,157 +1,9 @@
 //! A small writer of SVG elements: escapes text, writes numbers shortly, and leaves nothing to the locale.
 
-use super::style::{FONTS, INK};
-use super::text::{Kind, SUB, run_width, runs, width};
+pub(super) use super::paint::{Anchor, Font, Mark, Paint, Rect};
+use super::style::FONTS;
+use super::text::{Kind, SUB, runs};
 use std::fmt::Write as _;
-
-/// A rectangle on paper, points, y downwards.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rect {
-    pub x: f64,
-    pub y: f64,
-    pub w: f64,
-    pub h: f64,
-}
-
-impl Rect {
-    pub fn new(x: f64, y: f64, w: f64, h: f64) -> Self {
-        Self { x, y, w, h }
-    }
-
-    pub fn right(&self) -> f64 {
-        self.x + self.w
-    }
-
-    pub fn bottom(&self) -> f64 {
-        self.y + self.h
-    }
-
-    /// Area shared with another rectangle.
-    pub fn overlap(&self, other: &Rect) -> f64 {
-        let w = self.right().min(other.right()) - self.x.max(other.x);
-        let h = self.bottom().min(other.bottom()) - self.y.max(other.y);
-        if w > 0.0 && h > 0.0 { w * h } else { 0.0 }
-    }
-
-    pub fn holds(&self, other: &Rect) -> bool {
-        other.x >= self.x
-            && other.y >= self.y
-            && other.right() <= self.right()
-            && other.bottom() <= self.bottom()
-    }
-}
-
-/// How a shape is filled and outlined; `none` for neither.
-#[derive(Debug, Clone)]
-pub(super) struct Paint {
-    pub fill: String,
-    pub stroke: String,
-    pub width: f64,
-    pub dash: Vec<f64>,
-}
-
-impl Paint {
-    pub fn stroke(colour: &str, width: f64) -> Self {
-        Self {
-            fill: "none".into(),
-            stroke: colour.into(),
-            width,
-            dash: Vec::new(),
-        }
-    }
-
-    pub fn fill(colour: &str) -> Self {
-        Self {
-            fill: colour.into(),
-            stroke: "none".into(),
-            width: 0.0,
-            dash: Vec::new(),
-        }
-    }
-
-    pub fn dashed(mut self, dash: &[f64]) -> Self {
-        self.dash = dash.to_vec();
-        self
-    }
-
-    pub fn filled(mut self, colour: &str) -> Self {
-        self.fill = colour.into();
-        self
-    }
-
-    fn attributes(&self) -> String {
-        let mut out = format!("fill=\"{}\"", escape(&self.fill));
-        if self.stroke != "none" {
-            let _ = write!(
-                out,
-                " stroke=\"{}\" stroke-width=\"{}\"",
-                escape(&self.stroke),
-                num(self.width)
-            );
-        }
-        if !self.dash.is_empty() {
-            let dash: Vec<String> = self.dash.iter().map(|d| num(*d)).collect();
-            let _ = write!(out, " stroke-dasharray=\"{}\"", dash.join(" "));
-        }
-        out
-    }
-}
-
-/// Which point of a text is given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-/// How text is set.
-#[derive(Debug, Clone)]
-pub(super) struct Font {
-    pub size: f64,
-    pub anchor: Anchor,
-    pub colour: String,
-    pub bold: bool,
-    /// Set the first letter as a symbol even without an index (a gene named `M`).
-    pub symbol: bool,
-}
-
-impl Font {
-    pub fn new(size: f64, anchor: Anchor) -> Self {
-        Self {
-            size,
-            anchor,
-            colour: INK.into(),
-            bold: false,
-            symbol: false,
-        }
-    }
-
-    pub fn bold(mut self) -> Self {
-        self.bold = true;
-        self
-    }
-
-    pub fn colour(mut self, colour: &str) -> Self {
-        self.colour = colour.into();
-        self
-    }
-
-    pub fn symbol(mut self) -> Self {
-        self.symbol = true;
-        self
-    }
-}
-
-/// A shape for points of data.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mark {
-    Circle,
-    Square,
-    Diamond,
-    Triangle,
-    Cross,
-}
 
 /// An SVG document, or a part of one, being written.
 #[derive(Debug, Default)]
@@ -207,6 +59,11 @@ impl Svg {
             Mark::Square => vec![(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
             Mark::Diamond => vec![(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
             Mark::Triangle => vec![(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
+            Mark::RingedCross => {
+                let ring = Paint::stroke(&paint.stroke, paint.width * 0.85).filled("#FFFFFF");
+                self.circle(at, r * 1.9, &ring);
+                return self.mark(Mark::Cross, at, r, paint);
+            }
             Mark::Cross => {
                 self.line((x - r, y - r), (x + r, y + r), paint);
                 return self.line((x - r, y + r), (x + r, y - r), paint);
@@ -231,7 +88,7 @@ impl Svg {
         };
         let _ = write!(
             self.body,
-            "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"{anchor}\" fill=\"{}\"",
+            "<text xml:space=\"preserve\" x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"{anchor}\" fill=\"{}\"",
             num(font.size),
             escape(&font.colour)
         );
@@ -320,65 +177,6 @@ impl Svg {
             self.body
         )
     }
-}
-
-/// What stands before the words of a legend entry.
-pub(super) enum Key {
-    Line(Paint),
-    Mark(Mark, f64, Paint),
-    Area(Paint),
-}
-
-/// Writes legend entries from left to right from `x` on the baseline `y`, a new row where `right` is
-/// passed; returns the baseline of the last row and the end of its text.
-pub(super) fn legend(
-    svg: &mut Svg,
-    x: f64,
-    y: f64,
-    right: f64,
-    size: f64,
-    entries: &[(Key, &str)],
-) -> (f64, f64) {
-    let (mut pen, mut base) = (x, y);
-    for (key, words) in entries {
-        let key_width = if matches!(key, Key::Mark(..)) {
-            7.0
-        } else {
-            16.0
-        };
-        let needed = key_width + 3.0 + width(words, size, false);
-        if pen > x && pen + needed > right {
-            pen = x;
-            base += size * 1.5;
-        }
-        let middle = base - size * 0.34;
-        match key {
-            Key::Line(paint) => svg.line((pen, middle), (pen + key_width, middle), paint),
-            Key::Mark(mark, r, paint) => {
-                svg.mark(*mark, (pen + key_width / 2.0, middle), *r, paint)
-            }
-            Key::Area(paint) => {
-                svg.rect(
-                    &Rect::new(pen + 1.0, middle - 3.0, key_width - 2.0, 6.0),
-                    0.0,
-                    paint,
-                );
-            }
-        }
-        svg.text(
-            words,
-            (pen + key_width + 3.0, base),
-            &Font::new(size, Anchor::Start),
-        );
-        pen += needed + 11.0;
-    }
-    (base, pen - 11.0)
-}
-
-/// Width of text set in a font.
-pub(super) fn set_width(text: &str, font: &Font) -> f64 {
-    let natural: f64 = runs(text).iter().map(|run| run_width(run, font.size)).sum();
-    if font.bold { natural * 1.06 } else { natural }
 }
 
 /// Path data of a polyline; points closer than 0.05 pt to the one before are left out.

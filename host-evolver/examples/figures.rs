@@ -37,6 +37,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pattern(&channel(25, 1, true))?,
     )?;
     save(&directory, "trace", trace(&run(&[3.0], 4.0))?)?;
+    let mut square = run(&[3.0], 3.0);
+    square.window = Window {
+        min: [0.0, 0.0],
+        max: [20.0, 20.0],
+    };
+    save(&directory, "trace-square", trace(&square)?)?;
     save(&directory, "trace-two", trace(&run(&[2.5, 4.5], 5.0))?)?;
     Ok(())
 }

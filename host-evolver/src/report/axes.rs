@@ -5,7 +5,7 @@
 //! logarithm because the one of the platform may differ in its last bit.
 
 use super::error::FigureError;
-use super::style::{FONTS, GREY, INK, LABEL, LIGHT, SMALL, THIN};
+use super::style::{FONTS, INK, LABEL, LIGHT, SMALL, THIN};
 use super::svg::{Anchor, Font, Paint, Rect, Svg};
 use plotters::coord::ranged1d::{
     KeyPointHint, KeyPointWeight, NoDefaultFormatting, ValueFormatter,
@@ -34,7 +34,7 @@ impl Axis {
         let power = libm::pow(10.0, libm::floor(libm::log10(raw)));
         let step = [1.0, 2.0, 5.0, 10.0]
             .into_iter()
-            .find(|m| m * power >= raw * 0.999)
+            .find(|m| m * power >= raw * 0.7)
             .unwrap_or(10.0)
             * power;
         Self::stepped(lo, lo + span, step)
@@ -274,7 +274,6 @@ fn colour(hex: &str) -> RGBColor {
     };
     match (channel(1), channel(3), channel(5)) {
         (Some(r), Some(g), Some(b)) => RGBColor(r, g, b),
-        _ if hex == GREY => RGBColor(118, 118, 118),
         _ => RGBColor(128, 128, 128),
     }
 }

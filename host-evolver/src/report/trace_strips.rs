@@ -87,7 +87,7 @@ fn error_chart(figure: &TraceFigure, rect: Rect) -> Chart {
         .iter()
         .copied()
         .fold(figure.radial_band * 1.3, f64::max);
-    let y = Axis::linear(0.0, if most > 0.0 { most * 1.05 } else { 1.0 }, 4.0);
+    let y = Axis::linear(0.0, if most > 0.0 { most * 1.05 } else { 1.0 }, 3.0);
     Chart {
         rect,
         x: time_axis(figure),

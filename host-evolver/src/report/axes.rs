@@ -7,9 +7,7 @@
 use super::error::FigureError;
 use super::style::{FONTS, INK, LABEL, LIGHT, SMALL, THIN};
 use super::svg::{Anchor, Font, Paint, Rect, Svg};
-use plotters::coord::ranged1d::{
-    KeyPointHint, KeyPointWeight, NoDefaultFormatting, ValueFormatter,
-};
+use plotters::coord::ranged1d::{KeyPointHint, KeyPointWeight, NoDefaultFormatting, ValueFormatter};
 use plotters::prelude::*;
 
 const SCALE: f64 = 10.0;
@@ -32,11 +30,7 @@ impl Axis {
         let span = (hi - lo).max(1e-12 * lo.abs().max(1.0));
         let raw = span / count;
         let power = libm::pow(10.0, libm::floor(libm::log10(raw)));
-        let step = [1.0, 2.0, 5.0, 10.0]
-            .into_iter()
-            .find(|m| m * power >= raw * 0.7)
-            .unwrap_or(10.0)
-            * power;
+        let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= raw * 0.7).unwrap_or(10.0) * power;
         Self::stepped(lo, lo + span, step)
     }
 
@@ -47,18 +41,9 @@ impl Axis {
         let count = (libm::floor(hi / step + 1e-9) - first).clamp(0.0, 200.0) as usize;
         let tick = |i: usize| {
             let value = (first + i as f64) * step;
-            (
-                value,
-                format!("{value:.decimals$}").replace('-', "\u{2212}"),
-            )
+            (value, format!("{value:.decimals$}").replace('-', "\u{2212}"))
         };
-        Self {
-            lo,
-            hi,
-            ticks: (0..=count).map(tick).collect(),
-            minor: Vec::new(),
-            log: false,
-        }
+        Self { lo, hi, ticks: (0..=count).map(tick).collect(), minor: Vec::new(), log: false }
     }
 
     /// A logarithmic axis over `lo..hi`, both above 0, with ticks at 1, 2 and 5 or, over many decades, at 1.
@@ -77,11 +62,7 @@ impl Axis {
                 if mantissas.contains(&mantissa) && !whole_decades {
                     let decimals = (-decade).clamp(0.0, 20.0) as usize;
                     let value = f64::from(mantissa) * libm::pow(10.0, decade);
-                    let label = if decimals > 4 {
-                        format!("{value:.0e}")
-                    } else {
-                        format!("{value:.decimals$}")
-                    };
+                    let label = if decimals > 4 { format!("{value:.0e}") } else { format!("{value:.decimals$}") };
                     ticks.push((at, label));
                 } else {
                     minor.push(at);
@@ -89,13 +70,7 @@ impl Axis {
             }
             decade += 1.0;
         }
-        Self {
-            lo: low,
-            hi: high,
-            ticks,
-            minor,
-            log: true,
-        }
+        Self { lo: low, hi: high, ticks, minor, log: true }
     }
 
     /// The chart coordinate of a value; 0 has none on a logarithmic axis and is put at its lower end.
@@ -110,11 +85,7 @@ impl Axis {
     /// The words at a chart coordinate: none where there is no tick.
     fn label(&self, at: f64) -> String {
         let near = |tick: &&(f64, String)| (tick.0 - at).abs() <= 1e-9 * (self.hi - self.lo);
-        self.ticks
-            .iter()
-            .find(near)
-            .map(|tick| tick.1.clone())
-            .unwrap_or_default()
+        self.ticks.iter().find(near).map(|tick| tick.1.clone()).unwrap_or_default()
     }
 }
 
@@ -176,10 +147,7 @@ impl Chart {
     pub fn on_paper(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let share = |axis: &Axis, v: f64| (v - axis.lo) / (axis.hi - axis.lo);
         let (right, up) = (share(&self.x, x), share(&self.y, y));
-        (
-            self.rect.x + right * self.rect.w,
-            self.rect.bottom() - up * self.rect.h,
-        )
+        (self.rect.x + right * self.rect.w, self.rect.bottom() - up * self.rect.h)
     }
 
     /// Draws the axes, grid and lines.
@@ -193,11 +161,7 @@ impl Chart {
         }
         let middle = self.rect.x + self.rect.w / 2.0;
         if !self.x_label.is_empty() {
-            svg.text(
-                self.x_label,
-                (middle, self.rect.bottom() + 23.0),
-                &Font::new(LABEL, Anchor::Middle),
-            );
+            svg.text(self.x_label, (middle, self.rect.bottom() + 23.0), &Font::new(LABEL, Anchor::Middle));
         }
         let at = (self.rect.x - LEFT + 5.0, self.rect.y + self.rect.h / 2.0);
         svg.turned_text(self.y_label, at, -90.0, &Font::new(LABEL, Anchor::Middle));
@@ -215,9 +179,7 @@ impl Chart {
                 .set_label_area_size(LabelAreaPosition::Bottom, pixels(BELOW))
                 .build_cartesian_2d(self.x.clone(), self.y.clone())
                 .map_err(|e| e.to_string())?;
-            let font = (FONTS, SMALL * SCALE * 1.24)
-                .into_font()
-                .color(&colour(INK));
+            let font = (FONTS, SMALL * SCALE * 1.24).into_font().color(&colour(INK));
             chart
                 .configure_mesh()
                 .light_line_style(TRANSPARENT)
@@ -227,11 +189,7 @@ impl Chart {
                 .x_labels(self.x.ticks.len().max(1))
                 .y_labels(self.y.ticks.len().max(1))
                 .x_label_formatter(&|v| {
-                    if self.x_numbers {
-                        self.x.label(*v)
-                    } else {
-                        String::new()
-                    }
+                    if self.x_numbers { self.x.label(*v) } else { String::new() }
                 })
                 .y_label_formatter(&|v| self.y.label(*v))
                 .label_style(font)
@@ -241,17 +199,10 @@ impl Chart {
                 let style = colour(line.colour).stroke_width(pixels(line.width));
                 let points = line.points.iter().copied();
                 let drawn = match line.dash {
-                    [on, off, ..] => chart
-                        .draw_series(DashedLineSeries::new(
-                            points,
-                            pixels(*on),
-                            pixels(*off),
-                            style,
-                        ))
-                        .map(|_| ()),
-                    _ => chart
-                        .draw_series(LineSeries::new(points, style))
-                        .map(|_| ()),
+                    [on, off, ..] => {
+                        chart.draw_series(DashedLineSeries::new(points, pixels(*on), pixels(*off), style)).map(|_| ())
+                    }
+                    _ => chart.draw_series(LineSeries::new(points, style)).map(|_| ()),
                 };
                 drawn.map_err(|e| e.to_string())?;
             }
@@ -260,18 +211,13 @@ impl Chart {
         // Its root element goes: the chart becomes a part of another document.
         let start = out.find('>').ok_or("no root element")? + 1;
         let end = out.rfind("</svg>").ok_or("no end of the root element")?;
-        out.get(start..end)
-            .map(|s| s.trim_start().to_owned())
-            .ok_or_else(|| "an empty root element".to_owned())
+        out.get(start..end).map(|s| s.trim_start().to_owned()).ok_or_else(|| "an empty root element".to_owned())
     }
 }
 
 /// A colour of the form `#RRGGBB`; anything else is grey.
 fn colour(hex: &str) -> RGBColor {
-    let channel = |at: usize| {
-        hex.get(at..at + 2)
-            .and_then(|part| u8::from_str_radix(part, 16).ok())
-    };
+    let channel = |at: usize| hex.get(at..at + 2).and_then(|part| u8::from_str_radix(part, 16).ok());
     match (channel(1), channel(3), channel(5)) {
         (Some(r), Some(g), Some(b)) => RGBColor(r, g, b),
         _ => RGBColor(128, 128, 128),
@@ -285,18 +231,9 @@ mod tests {
     #[test]
     fn ticks_are_round_numbers() {
         let labels = |axis: Axis| axis.ticks.into_iter().map(|t| t.1).collect::<Vec<_>>();
-        assert_eq!(
-            labels(Axis::linear(0.0, 100.0, 5.0)),
-            ["0", "20", "40", "60", "80", "100"]
-        );
-        assert_eq!(
-            labels(Axis::linear(0.0, 0.3, 3.0)),
-            ["0.0", "0.1", "0.2", "0.3"]
-        );
-        assert_eq!(
-            labels(Axis::logarithmic(0.01, 0.5)),
-            ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]
-        );
+        assert_eq!(labels(Axis::linear(0.0, 100.0, 5.0)), ["0", "20", "40", "60", "80", "100"]);
+        assert_eq!(labels(Axis::linear(0.0, 0.3, 3.0)), ["0.0", "0.1", "0.2", "0.3"]);
+        assert_eq!(labels(Axis::logarithmic(0.01, 0.5)), ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5"]);
         assert!(labels(Axis::logarithmic(1e-9, 1.0)).len() < 8);
     }
 
@@ -310,35 +247,15 @@ mod tests {
             y_label: "y",
             x_numbers: true,
         };
-        let line = Line {
-            points: vec![(2.0, 0.25), (6.0, 0.75)],
-            colour: INK,
-            width: 1.0,
-            dash: &[],
-        };
+        let line = Line { points: vec![(2.0, 0.25), (6.0, 0.75)], colour: INK, width: 1.0, dash: &[] };
         let out = chart.plot(&[line]).unwrap();
         let points = out.lines().rfind(|l| l.starts_with("<polyline")).unwrap();
-        let inner = points
-            .split("points=\"")
-            .nth(1)
-            .unwrap()
-            .split('"')
-            .next()
-            .unwrap();
-        let drawn: Vec<f64> = inner
-            .split([' ', ','])
-            .filter_map(|n| n.parse().ok())
-            .collect();
+        let inner = points.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
+        let drawn: Vec<f64> = inner.split([' ', ',']).filter_map(|n| n.parse().ok()).collect();
         for (pair, value) in drawn.chunks(2).zip([(2.0, 0.25), (6.0, 0.75)]) {
             let (x, y) = chart.place(value.0, value.1);
-            assert!(
-                (pair[0] / SCALE + chart.rect.x - LEFT - x).abs() < 0.21,
-                "{pair:?} {x}"
-            );
-            assert!(
-                (pair[1] / SCALE + chart.rect.y - y).abs() < 0.21,
-                "{pair:?} {y}"
-            );
+            assert!((pair[0] / SCALE + chart.rect.x - LEFT - x).abs() < 0.21, "{pair:?} {x}");
+            assert!((pair[1] / SCALE + chart.rect.y - y).abs() < 0.21, "{pair:?} {y}");
         }
     }
 }

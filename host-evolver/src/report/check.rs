@@ -25,13 +25,7 @@ pub(super) fn read(svg: &str) -> Document {
     }
     assert!(svg.starts_with("<?xml"));
     let mut rest = &svg[svg.find("?>").unwrap() + 2..];
-    let (mut stack, mut document) = (
-        Vec::<String>::new(),
-        Document {
-            tags: vec![],
-            texts: vec![],
-        },
-    );
+    let (mut stack, mut document) = (Vec::<String>::new(), Document { tags: vec![], texts: vec![] });
     let mut roots = 0;
     while let Some(open) = rest.find('<') {
         let words = unescape(&rest[..open]);
@@ -75,14 +69,9 @@ pub(super) fn read(svg: &str) -> Document {
 fn unescape(text: &str) -> String {
     let mut at = 0;
     while let Some(amp) = text[at..].find('&') {
-        let known = ["&amp;", "&lt;", "&gt;", "&quot;"]
-            .iter()
-            .any(|e| text[at + amp..].starts_with(e));
+        let known = ["&amp;", "&lt;", "&gt;", "&quot;"].iter().any(|e| text[at + amp..].starts_with(e));
         assert!(known, "a bare & in {text}");
         at += amp + 1;
     }
-    text.replace("&lt;", "<")
-        .replace("&gt;", ">")
-        .replace("&quot;", "\"")
-        .replace("&amp;", "&")
+    text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
 }

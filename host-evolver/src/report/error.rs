@@ -51,23 +51,12 @@ impl std::fmt::Display for FigureError {
         match self {
             Self::Empty { what } => write!(f, "nothing to draw: no {what}"),
             Self::NotFinite { what, index } => write!(f, "{what} {index} is not a finite number"),
-            Self::OutOfRange {
-                what,
-                index,
-                expected,
-            } => write!(f, "{what} {index} must be {expected}"),
-            Self::Length {
-                what,
-                found,
-                expected,
-            } => {
+            Self::OutOfRange { what, index, expected } => write!(f, "{what} {index} must be {expected}"),
+            Self::Length { what, found, expected } => {
                 write!(f, "{what}: {found} values where {expected} are needed")
             }
             Self::TooMany { what, found, limit } => {
-                write!(
-                    f,
-                    "{found} {what} do not fit in one figure, which shows up to {limit}"
-                )
+                write!(f, "{found} {what} do not fit in one figure, which shows up to {limit}")
             }
             Self::Chart(reason) => write!(f, "the chart could not be drawn: {reason}"),
         }
@@ -80,20 +69,13 @@ impl std::error::Error for FigureError {}
 const LARGEST: f64 = 1e9;
 
 /// Rejects the first number of `values` that is NaN, infinite or absurdly large.
-pub(super) fn finite(
-    what: &'static str,
-    values: impl IntoIterator<Item = f64>,
-) -> Result<(), FigureError> {
+pub(super) fn finite(what: &'static str, values: impl IntoIterator<Item = f64>) -> Result<(), FigureError> {
     for (index, value) in values.into_iter().enumerate() {
         if !value.is_finite() {
             return Err(FigureError::NotFinite { what, index });
         }
         if value.abs() > LARGEST {
-            return Err(FigureError::OutOfRange {
-                what,
-                index,
-                expected: "between -1e9 and 1e9",
-            });
+            return Err(FigureError::OutOfRange { what, index, expected: "between -1e9 and 1e9" });
         }
     }
     Ok(())
@@ -115,11 +97,7 @@ pub(super) fn within(
     expected: &'static str,
 ) -> Result<(), FigureError> {
     match values.into_iter().position(|v| v < lo || v > hi) {
-        Some(index) => Err(FigureError::OutOfRange {
-            what,
-            index,
-            expected,
-        }),
+        Some(index) => Err(FigureError::OutOfRange { what, index, expected }),
         None => Ok(()),
     }
 }
@@ -129,11 +107,7 @@ impl FigureError {
     pub(super) fn within(self, what: &'static str, index: usize) -> Self {
         match self {
             Self::NotFinite { .. } => Self::NotFinite { what, index },
-            Self::OutOfRange { expected, .. } => Self::OutOfRange {
-                what,
-                index,
-                expected,
-            },
+            Self::OutOfRange { expected, .. } => Self::OutOfRange { what, index, expected },
             other => other,
         }
     }

@@ -13,11 +13,7 @@ pub(super) fn front(points: &[ParetoPoint]) -> Vec<usize> {
     let knee_last = |i: usize| points[i].knee.is_none();
     order.sort_by(|&a, &b| {
         let (p, q) = (&points[a], &points[b]);
-        p.nodes
-            .cmp(&q.nodes)
-            .then(p.f2.total_cmp(&q.f2))
-            .then(knee_last(a).cmp(&knee_last(b)))
-            .then(a.cmp(&b))
+        p.nodes.cmp(&q.nodes).then(p.f2.total_cmp(&q.f2)).then(knee_last(a).cmp(&knee_last(b))).then(a.cmp(&b))
     });
     let mut best = f64::INFINITY;
     order.retain(|&i| {
@@ -37,23 +33,15 @@ pub(super) fn front(points: &[ParetoPoint]) -> Vec<usize> {
 /// The axis of f1: a tick at every size there is, as far as there is room.
 pub(super) fn complexity(points: &[ParetoPoint]) -> Axis {
     let nodes = points.iter().map(|p| f64::from(p.nodes));
-    let (lo, hi) = nodes.fold((f64::INFINITY, 0.0_f64), |(lo, hi), n| {
-        (lo.min(n), hi.max(n))
-    });
+    let (lo, hi) = nodes.fold((f64::INFINITY, 0.0_f64), |(lo, hi), n| (lo.min(n), hi.max(n)));
     let odd = points.iter().all(|p| p.nodes % 2 == 1);
     let least = libm::ceil((hi - lo) / 11.0).max(1.0);
-    let mut step = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|s| *s >= least)
-        .unwrap_or(least);
+    let mut step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|s| *s >= least).unwrap_or(least);
     let mut axis = Axis::stepped(lo - 0.7, hi + 0.7, step);
     if odd && step <= 2.0 {
         step = 2.0;
         let count = ((hi - lo) / step) as usize;
-        axis.ticks = (0..=count)
-            .map(|i| lo + i as f64 * step)
-            .map(|n| (n, format!("{n:.0}")))
-            .collect();
+        axis.ticks = (0..=count).map(|i| lo + i as f64 * step).map(|n| (n, format!("{n:.0}"))).collect();
     }
     axis
 }
@@ -62,10 +50,7 @@ pub(super) fn complexity(points: &[ParetoPoint]) -> Axis {
 pub(super) fn error_axis(points: &[ParetoPoint], reference: Option<&Reference>) -> Axis {
     let values = || points.iter().map(|p| p.f2).chain(reference.map(|r| r.f2));
     let hi = values().fold(0.0, f64::max);
-    let lo = values()
-        .filter(|f| *f > 0.0)
-        .fold(f64::INFINITY, f64::min)
-        .max(hi * 1e-9);
+    let lo = values().filter(|f| *f > 0.0).fold(f64::INFINITY, f64::min).max(hi * 1e-9);
     if hi > 10.0 * lo && lo > 0.0 {
         // Room below for the words of a reference, which tends to be the least.
         return Axis::logarithmic(lo / libm::pow(hi / lo, 0.11), hi * libm::pow(hi / lo, 0.08));
@@ -107,16 +92,9 @@ impl Label {
         let mut best: Option<(f64, Self)> = None;
         for limit in [400.0, 130.0, 95.0] {
             let lines = wrap(text, SMALL, limit);
-            let w = lines
-                .iter()
-                .map(|l| width(l, SMALL, false))
-                .fold(0.0, f64::max)
-                + 3.0;
+            let w = lines.iter().map(|l| width(l, SMALL, false)).fold(0.0, f64::max) + 3.0;
             let h = lines.len() as f64 * LINE + 2.0;
-            for (ring, gap) in [6.0, 10.0, 15.0, 22.0, 34.0, 48.0, 64.0, 80.0]
-                .into_iter()
-                .enumerate()
-            {
+            for (ring, gap) in [6.0, 10.0, 15.0, 22.0, 34.0, 48.0, 64.0, 80.0].into_iter().enumerate() {
                 let around = [
                     (at.0 + gap * 0.8, at.1 - gap - h * 0.8),
                     (at.0 + gap, at.1 - h / 2.0),
@@ -128,14 +106,8 @@ impl Label {
                     (at.0 + gap * 0.8, at.1 + gap),
                 ];
                 for (turn, (x, y)) in around.into_iter().enumerate() {
-                    let label = Self {
-                        lines: lines.clone(),
-                        rect: Rect::new(x, y, w, h),
-                        at,
-                    };
-                    let leader = label
-                        .leader()
-                        .map_or(0.0, |(from, to)| 0.3 * taken.line_cost(from, to));
+                    let label = Self { lines: lines.clone(), rect: Rect::new(x, y, w, h), at };
+                    let leader = label.leader().map_or(0.0, |(from, to)| 0.3 * taken.line_cost(from, to));
                     let own = ring as f64 * 7.0 + turn as f64 + lines.len() as f64 * 3.0;
                     let cost = taken.cost(&label.rect) + leader + own;
                     if best.as_ref().is_none_or(|(least, _)| cost < *least) {
@@ -152,10 +124,7 @@ impl Label {
         let (r, at) = (&self.rect, self.at);
         let near = (at.0.clamp(r.x, r.right()), at.1.clamp(r.y, r.bottom()));
         let gap = libm::hypot(near.0 - at.0, near.1 - at.1);
-        let start = (
-            at.0 + (near.0 - at.0) * 4.8 / gap,
-            at.1 + (near.1 - at.1) * 4.8 / gap,
-        );
+        let start = (at.0 + (near.0 - at.0) * 4.8 / gap, at.1 + (near.1 - at.1) * 4.8 / gap);
         (gap > 9.0).then_some((start, near))
     }
 
@@ -174,11 +143,7 @@ impl Label {
         svg.rect(&self.rect, 1.5, &Paint::fill("#FFFFFF"));
         for (i, line) in self.lines.iter().enumerate() {
             let base = self.rect.y + 8.0 + LINE * i as f64;
-            svg.text(
-                line,
-                (self.rect.x + 1.5, base),
-                &Font::new(SMALL, Anchor::Start),
-            );
+            svg.text(line, (self.rect.x + 1.5, base), &Font::new(SMALL, Anchor::Start));
         }
     }
 }

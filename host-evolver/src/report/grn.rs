@@ -1,9 +1,7 @@
 //! The network a model stands for: genes, what they read, and what promotes or represses them.
 
 use super::error::{FigureError, finite};
-use super::grn_draw::{
-    Columns, Edge, GENE_HEIGHT, RADIUS, arrow, bar, draw_edge, draw_gene, layers,
-};
+use super::grn_draw::{Columns, Edge, GENE_HEIGHT, RADIUS, arrow, bar, draw_edge, draw_gene, layers};
 use super::grn_layout::Layout;
 use super::legend::{Key, legend};
 use super::style::{COLUMN, INK, SMALL, VERMILLION};
@@ -55,18 +53,10 @@ pub fn grn(genes: &[Gene]) -> Result<String, FigureError> {
     check(genes)?;
     let layers = layers(genes);
     let mut layout = Layout::default();
-    let reads = |source| {
-        genes
-            .iter()
-            .flat_map(|g| &g.inputs)
-            .any(|i| i.source == source)
-    };
+    let reads = |source| genes.iter().flat_map(|g| &g.inputs).any(|i| i.source == source);
     let x1 = reads(Source::X1).then(|| layout.add(0, 2.0 * RADIUS));
     let x2 = reads(Source::X2).then(|| layout.add(0, 2.0 * RADIUS));
-    let boxes: Vec<usize> = layers
-        .iter()
-        .map(|&layer| layout.add(layer, GENE_HEIGHT))
-        .collect();
+    let boxes: Vec<usize> = layers.iter().map(|&layer| layout.add(layer, GENE_HEIGHT)).collect();
     let node_of = |source: Source| match source {
         Source::X1 => x1.unwrap_or_default(),
         Source::X2 => x2.unwrap_or_default(),
@@ -74,12 +64,7 @@ pub fn grn(genes: &[Gene]) -> Result<String, FigureError> {
     };
     let mut routes = Vec::new();
     for (gene, to) in genes.iter().zip(&boxes) {
-        let route = |input: &Input| {
-            (
-                node_of(input.source),
-                layout.connect(node_of(input.source), *to),
-            )
-        };
+        let route = |input: &Input| (node_of(input.source), layout.connect(node_of(input.source), *to));
         routes.push(gene.inputs.iter().map(route).collect::<Vec<_>>());
     }
     let height = layout.arrange();
@@ -94,49 +79,30 @@ pub fn grn(genes: &[Gene]) -> Result<String, FigureError> {
     };
     for g in 0..genes.len() {
         // Ports from top to bottom in the order in which the edges arrive.
-        let arrival =
-            |(from, passed): &(usize, Vec<usize>)| layout.nodes[*passed.last().unwrap_or(from)].y;
+        let arrival = |(from, passed): &(usize, Vec<usize>)| layout.nodes[*passed.last().unwrap_or(from)].y;
         let mut order: Vec<usize> = (0..routes[g].len()).collect();
         order.sort_by(|&a, &b| arrival(&routes[g][a]).total_cmp(&arrival(&routes[g][b])));
         let step = (GENE_HEIGHT * 0.62 / order.len() as f64).min(11.0);
         for (port, &i) in order.iter().enumerate() {
             let (from, passed) = &routes[g][i];
-            let twins: Vec<usize> = order
-                .iter()
-                .copied()
-                .filter(|&j| genes[g].inputs[j].source == genes[g].inputs[i].source)
-                .collect();
-            let turn = twins.iter().position(|&j| j == i).unwrap_or(0) as f64
-                - (twins.len() - 1) as f64 / 2.0;
+            let twins: Vec<usize> =
+                order.iter().copied().filter(|&j| genes[g].inputs[j].source == genes[g].inputs[i].source).collect();
+            let turn = twins.iter().position(|&j| j == i).unwrap_or(0) as f64 - (twins.len() - 1) as f64 / 2.0;
             let shift = turn * (12.0 / twins.len() as f64).min(6.0);
             let start_y = top + layout.nodes[*from].y + shift;
             let start_x = match genes[g].inputs[i].source {
                 Source::Gene(source) => rect(source).right(),
-                _ => {
-                    columns.places[0].0
-                        + RADIUS
-                        + libm::sqrt((RADIUS * RADIUS - shift * shift).max(0.0))
-                }
+                _ => columns.places[0].0 + RADIUS + libm::sqrt((RADIUS * RADIUS - shift * shift).max(0.0)),
             };
             let mut path = vec![(start_x, start_y)];
             for &place in passed {
                 let (x, w) = columns.places[layout.nodes[place].layer];
-                path.extend([
-                    (x, top + layout.nodes[place].y),
-                    (x + w, top + layout.nodes[place].y),
-                ]);
+                path.extend([(x, top + layout.nodes[place].y), (x + w, top + layout.nodes[place].y)]);
             }
             let end = rect(g);
-            let y =
-                end.y + GENE_HEIGHT / 2.0 + (port as f64 - (order.len() - 1) as f64 / 2.0) * step;
+            let y = end.y + GENE_HEIGHT / 2.0 + (port as f64 - (order.len() - 1) as f64 / 2.0) * step;
             path.push((end.x, y));
-            draw_edge(
-                &mut svg,
-                &Edge {
-                    path,
-                    activates: genes[g].inputs[i].activates,
-                },
-            );
+            draw_edge(&mut svg, &Edge { path, activates: genes[g].inputs[i].activates });
         }
     }
     let middle = columns.places[0].0 + RADIUS;
@@ -167,11 +133,7 @@ fn check(genes: &[Gene]) -> Result<(), FigureError> {
         return Err(FigureError::Empty { what: "genes" });
     }
     if genes.len() > GENES {
-        return Err(FigureError::TooMany {
-            what: "genes",
-            found: genes.len(),
-            limit: GENES,
-        });
+        return Err(FigureError::TooMany { what: "genes", found: genes.len(), limit: GENES });
     }
     finite("θ of gene", genes.iter().map(|g| g.theta))?;
     let late = |(i, gene): (usize, &Gene)| {
@@ -181,11 +143,7 @@ fn check(genes: &[Gene]) -> Result<(), FigureError> {
     match genes.iter().enumerate().position(late) {
         Some(index) => {
             let expected = "a reader of inputs or earlier genes";
-            Err(FigureError::OutOfRange {
-                what: "gene",
-                index,
-                expected,
-            })
+            Err(FigureError::OutOfRange { what: "gene", index, expected })
         }
         None => Ok(()),
     }
@@ -197,16 +155,8 @@ mod tests {
     use super::*;
 
     fn gene(name: &str, inputs: &[(Source, bool)]) -> Gene {
-        let inputs = inputs
-            .iter()
-            .map(|&(source, activates)| Input { source, activates })
-            .collect();
-        Gene {
-            name: name.into(),
-            motif: "XNOR".into(),
-            theta: 0.8393,
-            inputs,
-        }
+        let inputs = inputs.iter().map(|&(source, activates)| Input { source, activates }).collect();
+        Gene { name: name.into(), motif: "XNOR".into(), theta: 0.8393, inputs }
     }
 
     fn pair() -> Vec<Gene> {
@@ -222,11 +172,7 @@ mod tests {
         assert_eq!(svg, grn(&pair()).unwrap());
         let document = read(&svg);
         assert_eq!(document.count("class=\"gene\""), 2);
-        let edges: Vec<&String> = document
-            .tags
-            .iter()
-            .filter(|t| t.starts_with("path") && t.contains('C'))
-            .collect();
+        let edges: Vec<&String> = document.tags.iter().filter(|t| t.starts_with("path") && t.contains('C')).collect();
         let mut distinct = edges.clone();
         distinct.dedup();
         assert_eq!(edges.len(), 4);
@@ -246,21 +192,9 @@ mod tests {
         assert_eq!(grn(&[]), Err(FigureError::Empty { what: "genes" }));
         let mut genes = pair();
         genes[0].theta = f64::INFINITY;
-        assert_eq!(
-            grn(&genes),
-            Err(FigureError::NotFinite {
-                what: "θ of gene",
-                index: 0
-            })
-        );
+        assert_eq!(grn(&genes), Err(FigureError::NotFinite { what: "θ of gene", index: 0 }));
         let own = [gene("G1", &[(Source::Gene(0), true)])];
-        assert!(matches!(
-            grn(&own),
-            Err(FigureError::OutOfRange { index: 0, .. })
-        ));
-        assert!(matches!(
-            grn(&[gene("G1", &[])]),
-            Err(FigureError::OutOfRange { index: 0, .. })
-        ));
+        assert!(matches!(grn(&own), Err(FigureError::OutOfRange { index: 0, .. })));
+        assert!(matches!(grn(&[gene("G1", &[])]), Err(FigureError::OutOfRange { index: 0, .. })));
     }
 }

@@ -68,11 +68,7 @@ impl Columns {
             places.push((x, w));
             x += w + gap;
         }
-        Self {
-            gene_widths,
-            places,
-            right: x - gap + 6.0,
-        }
+        Self { gene_widths, places, right: x - gap + 6.0 }
     }
 }
 
@@ -85,32 +81,17 @@ pub(super) fn theta(gene: &Gene) -> String {
 }
 
 pub(super) fn draw_gene(svg: &mut Svg, gene: &Gene, rect: &Rect, last: bool) {
-    svg.open(
-        "gene",
-        &format!("{} = {}, θ = {}", gene.name, gene.motif, gene.theta),
-    );
+    svg.open("gene", &format!("{} = {}, θ = {}", gene.name, gene.motif, gene.theta));
     let line = if last { BLUE } else { INK };
-    svg.rect(
-        rect,
-        4.0,
-        &Paint::stroke(line, if last { 1.2 } else { THIN }).filled(BOX_TINT),
-    );
+    svg.rect(rect, 4.0, &Paint::stroke(line, if last { 1.2 } else { THIN }).filled(BOX_TINT));
     if last {
         let inner = Rect::new(rect.x + 1.9, rect.y + 1.9, rect.w - 3.8, rect.h - 3.8);
         svg.rect(&inner, 2.6, &Paint::stroke(line, 0.5));
     }
     let middle = rect.x + rect.w / 2.0;
     svg.text(&gene.name, (middle, rect.y + 10.6), &name_font());
-    svg.text(
-        &gene.motif,
-        (middle, rect.y + 20.6),
-        &Font::new(SMALL, Anchor::Middle),
-    );
-    svg.text(
-        &theta(gene),
-        (middle, rect.y + 29.8),
-        &Font::new(SMALL, Anchor::Middle),
-    );
+    svg.text(&gene.motif, (middle, rect.y + 20.6), &Font::new(SMALL, Anchor::Middle));
+    svg.text(&theta(gene), (middle, rect.y + 29.8), &Font::new(SMALL, Anchor::Middle));
     svg.close();
 }
 
@@ -128,11 +109,7 @@ pub(super) fn draw_edge(svg: &mut Svg, edge: &Edge) {
         }
         // The second of two places in one layer is reached on the level.
         let bend = (to.0 - from.0) * 0.5;
-        let lead = if i + 2 == edge.path.len() {
-            (to.0 - from.0) * 0.55
-        } else {
-            bend
-        };
+        let lead = if i + 2 == edge.path.len() { (to.0 - from.0) * 0.55 } else { bend };
         let numbers = [from.0 + bend, from.1, to.0 - lead, to.1, to.0, to.1].map(num);
         let _ = write!(d, "C{}", numbers.join(" "));
     }
@@ -152,9 +129,5 @@ pub(super) fn arrow(svg: &mut Svg, tip: (f64, f64)) {
 }
 
 pub(super) fn bar(svg: &mut Svg, at: (f64, f64)) {
-    svg.line(
-        (at.0, at.1 - 3.3),
-        (at.0, at.1 + 3.3),
-        &Paint::stroke(VERMILLION, 1.5),
-    );
+    svg.line((at.0, at.1 - 3.3), (at.0, at.1 + 3.3), &Paint::stroke(VERMILLION, 1.5));
 }

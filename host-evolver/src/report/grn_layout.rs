@@ -23,11 +23,7 @@ const SPACE: f64 = 9.0;
 
 impl Layout {
     pub fn add(&mut self, layer: usize, height: f64) -> usize {
-        self.nodes.push(Node {
-            layer,
-            height,
-            y: 0.0,
-        });
+        self.nodes.push(Node { layer, height, y: 0.0 });
         self.nodes.len() - 1
     }
 
@@ -85,14 +81,9 @@ impl Layout {
                 false => (a == node).then_some(rank[b]),
             };
             let ranks: Vec<f64> = self.links.iter().filter_map(near).collect();
-            if ranks.is_empty() {
-                rank[node]
-            } else {
-                ranks.iter().sum::<f64>() / ranks.len() as f64
-            }
+            if ranks.is_empty() { rank[node] } else { ranks.iter().sum::<f64>() / ranks.len() as f64 }
         };
-        let mut keyed: Vec<(f64, usize)> =
-            self.order[layer].iter().map(|&n| (mean(n), n)).collect();
+        let mut keyed: Vec<(f64, usize)> = self.order[layer].iter().map(|&n| (mean(n), n)).collect();
         keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.order[layer] = keyed.into_iter().map(|(_, node)| node).collect();
     }
@@ -125,24 +116,12 @@ impl Layout {
         }
         for round in 0..60 {
             for step in 0..self.order.len() {
-                let at = if round % 2 == 0 {
-                    step
-                } else {
-                    self.order.len() - 1 - step
-                };
+                let at = if round % 2 == 0 { step } else { self.order.len() - 1 - step };
                 self.settle_layer(&self.order[at].clone());
             }
         }
-        let top = self
-            .nodes
-            .iter()
-            .map(|n| n.y - n.height / 2.0)
-            .fold(f64::INFINITY, f64::min);
-        let bottom = self
-            .nodes
-            .iter()
-            .map(|n| n.y + n.height / 2.0)
-            .fold(f64::NEG_INFINITY, f64::max);
+        let top = self.nodes.iter().map(|n| n.y - n.height / 2.0).fold(f64::INFINITY, f64::min);
+        let bottom = self.nodes.iter().map(|n| n.y + n.height / 2.0).fold(f64::NEG_INFINITY, f64::max);
         for node in &mut self.nodes {
             node.y -= top;
         }
@@ -151,23 +130,15 @@ impl Layout {
 
     fn settle_layer(&mut self, layer: &[usize]) {
         let wish = |node: usize| {
-            let near = self
-                .links
-                .iter()
-                .filter_map(|&(a, b)| match (a == node, b == node) {
-                    (true, _) => Some(self.nodes[b].y),
-                    (_, true) => Some(self.nodes[a].y),
-                    _ => None,
-                });
+            let near = self.links.iter().filter_map(|&(a, b)| match (a == node, b == node) {
+                (true, _) => Some(self.nodes[b].y),
+                (_, true) => Some(self.nodes[a].y),
+                _ => None,
+            });
             let (sum, count) = near.fold((0.0, 0.0), |(sum, count), y| (sum + y, count + 1.0));
-            if count > 0.0 {
-                sum / count
-            } else {
-                self.nodes[node].y
-            }
+            if count > 0.0 { sum / count } else { self.nodes[node].y }
         };
-        let apart =
-            |a: usize, b: usize| (self.nodes[a].height + self.nodes[b].height) / 2.0 + SPACE;
+        let apart = |a: usize, b: usize| (self.nodes[a].height + self.nodes[b].height) / 2.0 + SPACE;
         let wishes: Vec<f64> = layer.iter().map(|&n| wish(n)).collect();
         let (mut down, mut up) = (wishes.clone(), wishes);
         for i in 1..layer.len() {

@@ -20,11 +20,7 @@ impl Window {
             return Err(FigureError::NotFinite { what, index });
         }
         if self.width() < 1e-3 || self.height() < 1e-3 {
-            return Err(FigureError::OutOfRange {
-                what,
-                index,
-                expected: "at least 1 mm wide and high",
-            });
+            return Err(FigureError::OutOfRange { what, index, expected: "at least 1 mm wide and high" });
         }
         Ok(())
     }
@@ -52,11 +48,7 @@ impl View {
     pub fn new(window: &Window, rect: Rect) -> Self {
         let scale = (rect.w / window.width()).min(rect.h / window.height());
         let middle = [0, 1].map(|i| (window.min[i] + window.max[i]) / 2.0);
-        Self {
-            rect,
-            scale,
-            middle,
-        }
+        Self { rect, scale, middle }
     }
 
     pub fn place(&self, p: [f64; 2]) -> (f64, f64) {
@@ -68,12 +60,8 @@ impl View {
 
     /// Path data of lines in the world.
     pub fn path(&self, lines: &[Vec<[f64; 2]>], closed: bool) -> String {
-        let on_paper =
-            |line: &Vec<[f64; 2]>| line.iter().map(|p| self.place(*p)).collect::<Vec<_>>();
-        lines
-            .iter()
-            .map(|line| poly(&on_paper(line), closed))
-            .collect()
+        let on_paper = |line: &Vec<[f64; 2]>| line.iter().map(|p| self.place(*p)).collect::<Vec<_>>();
+        lines.iter().map(|line| poly(&on_paper(line), closed)).collect()
     }
 
     pub fn walls(&self, svg: &mut Svg, walls: &[Vec<[f64; 2]>]) {
@@ -89,10 +77,7 @@ impl View {
     pub fn bar_length(&self, limit: f64) -> f64 {
         let most = limit / self.scale;
         let power = libm::pow(10.0, libm::floor(libm::log10(most)));
-        let times = [5.0, 2.0, 1.0]
-            .into_iter()
-            .find(|m| m * power <= most)
-            .unwrap_or(1.0);
+        let times = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= most).unwrap_or(1.0);
         times * power
     }
 
@@ -126,10 +111,7 @@ mod tests {
 
     #[test]
     fn a_metre_is_as_long_in_both_directions() {
-        let window = Window {
-            min: [2.0, 3.0],
-            max: [12.0, 8.0],
-        };
+        let window = Window { min: [2.0, 3.0], max: [12.0, 8.0] };
         let view = View::new(&window, Rect::new(10.0, 20.0, 100.0, 100.0));
         assert_eq!(view.place([7.0, 5.5]), (60.0, 70.0));
         assert_eq!(view.place([8.0, 6.5]), (70.0, 60.0));
@@ -138,24 +120,9 @@ mod tests {
 
     #[test]
     fn empty_windows_are_refused() {
-        let flat = Window {
-            min: [0.0, 1.0],
-            max: [3.0, 1.0],
-        };
-        assert!(matches!(
-            flat.check("window", 4),
-            Err(FigureError::OutOfRange { index: 4, .. })
-        ));
-        let broken = Window {
-            min: [0.0, f64::NAN],
-            max: [3.0, 1.0],
-        };
-        assert_eq!(
-            broken.check("window", 0),
-            Err(FigureError::NotFinite {
-                what: "window",
-                index: 0
-            })
-        );
+        let flat = Window { min: [0.0, 1.0], max: [3.0, 1.0] };
+        assert!(matches!(flat.check("window", 4), Err(FigureError::OutOfRange { index: 4, .. })));
+        let broken = Window { min: [0.0, f64::NAN], max: [3.0, 1.0] };
+        assert_eq!(broken.check("window", 0), Err(FigureError::NotFinite { what: "window", index: 0 }));
     }
 }

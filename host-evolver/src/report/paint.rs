@@ -35,10 +35,7 @@ impl Rect {
     }
 
     pub fn holds(&self, other: &Rect) -> bool {
-        other.x >= self.x
-            && other.y >= self.y
-            && other.right() <= self.right()
-            && other.bottom() <= self.bottom()
+        other.x >= self.x && other.y >= self.y && other.right() <= self.right() && other.bottom() <= self.bottom()
     }
 }
 
@@ -53,21 +50,11 @@ pub(super) struct Paint {
 
 impl Paint {
     pub fn stroke(colour: &str, width: f64) -> Self {
-        Self {
-            fill: "none".into(),
-            stroke: colour.into(),
-            width,
-            dash: Vec::new(),
-        }
+        Self { fill: "none".into(), stroke: colour.into(), width, dash: Vec::new() }
     }
 
     pub fn fill(colour: &str) -> Self {
-        Self {
-            fill: colour.into(),
-            stroke: "none".into(),
-            width: 0.0,
-            dash: Vec::new(),
-        }
+        Self { fill: colour.into(), stroke: "none".into(), width: 0.0, dash: Vec::new() }
     }
 
     pub fn dashed(mut self, dash: &[f64]) -> Self {
@@ -84,12 +71,7 @@ impl Paint {
     pub fn attributes(&self) -> String {
         let mut out = format!("fill=\"{}\"", escape(&self.fill));
         if self.stroke != "none" {
-            let _ = write!(
-                out,
-                " stroke=\"{}\" stroke-width=\"{}\"",
-                escape(&self.stroke),
-                num(self.width)
-            );
+            let _ = write!(out, " stroke=\"{}\" stroke-width=\"{}\"", escape(&self.stroke), num(self.width));
         }
         if !self.dash.is_empty() {
             let dash: Vec<String> = self.dash.iter().map(|d| num(*d)).collect();
@@ -120,13 +102,7 @@ pub(super) struct Font {
 
 impl Font {
     pub fn new(size: f64, anchor: Anchor) -> Self {
-        Self {
-            size,
-            anchor,
-            colour: INK.into(),
-            bold: false,
-            symbol: false,
-        }
+        Self { size, anchor, colour: INK.into(), bold: false, symbol: false }
     }
 
     pub fn bold(mut self) -> Self {

@@ -71,48 +71,24 @@ pub struct Reference {
 ///
 /// # Errors
 /// No feasible point, an f2 that is not finite or not in 0 to 1000, no nodes, an infeasible knee.
-pub fn pareto(
-    points: &[ParetoPoint],
-    title: &str,
-    reference: Option<&Reference>,
-) -> Result<String, FigureError> {
+pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>) -> Result<String, FigureError> {
     finite("f2 of point", points.iter().map(|p| p.f2))?;
-    within(
-        "f2 of point",
-        points.iter().map(|p| p.f2),
-        F2,
-        "from 0 to 1000",
-    )?;
+    within("f2 of point", points.iter().map(|p| p.f2), F2, "from 0 to 1000")?;
     let expected = "of at least one node, and feasible if it is a knee";
     let bad = |p: &ParetoPoint| p.nodes == 0 || (p.knee.is_some() && !p.feasible);
     if let Some(index) = points.iter().position(bad) {
-        return Err(FigureError::OutOfRange {
-            what: "point",
-            index,
-            expected,
-        });
+        return Err(FigureError::OutOfRange { what: "point", index, expected });
     }
     finite("f2 of reference", reference.map(|r| r.f2))?;
-    within(
-        "f2 of reference",
-        reference.map(|r| r.f2),
-        F2,
-        "from 0 to 1000",
-    )?;
+    within("f2 of reference", reference.map(|r| r.f2), F2, "from 0 to 1000")?;
     let front = front(points);
     if front.is_empty() {
-        return Err(FigureError::Empty {
-            what: "feasible solutions",
-        });
+        return Err(FigureError::Empty { what: "feasible solutions" });
     }
     let mut svg = Svg::default();
     let mut top = 6.0;
     if !title.is_empty() {
-        svg.text(
-            title,
-            (COLUMN / 2.0, 11.0),
-            &Font::new(LABEL, Anchor::Middle).bold(),
-        );
+        svg.text(title, (COLUMN / 2.0, 11.0), &Font::new(LABEL, Anchor::Middle).bold());
         top = 18.0;
     }
     let entries = entries(points, &front);
@@ -127,12 +103,7 @@ pub fn pareto(
         x_numbers: true,
     };
     let stairs = staircase(points, &front, &chart);
-    let mut lines = vec![Line {
-        points: stairs.clone(),
-        colour: INK,
-        width: DATA * 0.8,
-        dash: &[],
-    }];
+    let mut lines = vec![Line { points: stairs.clone(), colour: INK, width: DATA * 0.8, dash: &[] }];
     if let Some(r) = reference {
         let at = chart.y.at(r.f2);
         lines.push(Line {
@@ -168,12 +139,7 @@ pub fn pareto(
         svg.close();
     }
     // The most complex first: its label can go to the right, which leaves the rest room above.
-    for p in front
-        .iter()
-        .rev()
-        .map(|&i| &points[i])
-        .filter(|p| p.knee.is_some())
-    {
+    for p in front.iter().rev().map(|&i| &points[i]).filter(|p| p.knee.is_some()) {
         if let Some(label) = Label::fit(&p.label, place(p), &taken) {
             label.draw(&mut svg);
             label.take(&mut taken);
@@ -187,12 +153,7 @@ fn name_reference(svg: &mut Svg, chart: &Chart, reference: &Reference, taken: &m
     let y = chart.place(chart.x.lo, reference.f2).1;
     let w = width(&reference.label, SMALL, false) + 2.0;
     let (left, right) = (chart.rect.x + 1.0, chart.rect.right() - w - 1.0);
-    let places = [
-        (right, y + 1.2),
-        (left, y + 1.2),
-        (right, y - 10.0),
-        (left, y - 10.0),
-    ];
+    let places = [(right, y + 1.2), (left, y + 1.2), (right, y - 10.0), (left, y - 10.0)];
     let places = places.map(|(x, top)| (Rect::new(x, top, w, 8.8), 0.0));
     taken.add_line((chart.rect.x, y), (chart.rect.right(), y), 6.0);
     if let Some(rect) = taken.cheapest(places) {
@@ -212,19 +173,14 @@ fn other_look(feasible: bool) -> (Mark, f64, Paint) {
 
 fn front_look(knee: Option<KneeKind>) -> (Mark, f64, Paint) {
     match knee {
-        Some(kind) => (
-            kind.mark(),
-            3.2,
-            Paint::stroke(INK, THIN).filled(VERMILLION),
-        ),
+        Some(kind) => (kind.mark(), 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
         None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
     }
 }
 
 fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> {
     let mut entries = Vec::new();
-    let mut add =
-        |look: (Mark, f64, Paint), words| entries.push((Key::Mark(look.0, look.1, look.2), words));
+    let mut add = |look: (Mark, f64, Paint), words| entries.push((Key::Mark(look.0, look.1, look.2), words));
     if front.iter().any(|&i| points[i].knee.is_none()) {
         add(front_look(None), "non-dominated");
     }
@@ -233,18 +189,9 @@ fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> 
     let present: Vec<KneeKind> = kinds.into_iter().filter(present).collect();
     for &kind in &present {
         let only = kind == KneeKind::Both && present.len() == 1;
-        add(
-            front_look(Some(kind)),
-            if only { "knee" } else { kind.words() },
-        );
+        add(front_look(Some(kind)), if only { "knee" } else { kind.words() });
     }
-    let others = || {
-        points
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| !front.contains(i))
-            .map(|(_, p)| p)
-    };
+    let others = || points.iter().enumerate().filter(|(i, _)| !front.contains(i)).map(|(_, p)| p);
     if others().any(|p| p.feasible) {
         add(other_look(true), "dominated");
     }
@@ -259,33 +206,15 @@ mod tests {
     use super::super::check::read;
     use super::*;
 
-    fn point(
-        nodes: u32,
-        f2: f64,
-        feasible: bool,
-        knee: Option<KneeKind>,
-        label: &str,
-    ) -> ParetoPoint {
-        ParetoPoint {
-            nodes,
-            f2,
-            feasible,
-            knee,
-            label: label.to_owned(),
-        }
+    fn point(nodes: u32, f2: f64, feasible: bool, knee: Option<KneeKind>, label: &str) -> ParetoPoint {
+        ParetoPoint { nodes, f2, feasible, knee, label: label.to_owned() }
     }
 
     fn sample() -> Vec<ParetoPoint> {
         vec![
             point(7, 0.0140, true, None, "ANDN(x1,x2)"),
             point(3, 0.31, true, None, "XOR(x1,x2)"),
-            point(
-                5,
-                0.0152,
-                true,
-                Some(KneeKind::Both),
-                "XNOR(NAND(x1,x1),x2)",
-            ),
+            point(5, 0.0152, true, Some(KneeKind::Both), "XNOR(NAND(x1,x1),x2)"),
             point(5, 0.2, true, None, "a & b <c>"),
             point(9, 0.1, false, None, ""),
         ]
@@ -298,10 +227,7 @@ mod tests {
 
     #[test]
     fn knees_are_labelled_and_bytes_repeat() {
-        let reference = Reference {
-            f2: 0.01339,
-            label: "perfect circle".into(),
-        };
+        let reference = Reference { f2: 0.01339, label: "perfect circle".into() };
         let svg = pareto(&sample(), "T & <1>", Some(&reference)).unwrap();
         assert_eq!(svg, pareto(&sample(), "T & <1>", Some(&reference)).unwrap());
         let document = read(&svg);
@@ -316,42 +242,18 @@ mod tests {
     #[test]
     fn one_point_and_zero_error_can_be_drawn() {
         read(&pareto(&[point(1, 0.0, true, None, "x1")], "", None).unwrap());
-        read(
-            &pareto(
-                &[
-                    point(1, 0.0, true, None, "x1"),
-                    point(1, 3.0, true, None, ""),
-                ],
-                "",
-                None,
-            )
-            .unwrap(),
-        );
+        read(&pareto(&[point(1, 0.0, true, None, "x1"), point(1, 3.0, true, None, "")], "", None).unwrap());
     }
 
     #[test]
     fn bad_data_is_named() {
-        let empty = FigureError::Empty {
-            what: "feasible solutions",
-        };
+        let empty = FigureError::Empty { what: "feasible solutions" };
         assert_eq!(pareto(&[], "", None), Err(empty.clone()));
-        assert_eq!(
-            pareto(&[point(3, 0.1, false, None, "")], "", None),
-            Err(empty)
-        );
+        assert_eq!(pareto(&[point(3, 0.1, false, None, "")], "", None), Err(empty));
         let mut points = sample();
         points[3].f2 = f64::NAN;
-        assert_eq!(
-            pareto(&points, "", None),
-            Err(FigureError::NotFinite {
-                what: "f2 of point",
-                index: 3
-            })
-        );
+        assert_eq!(pareto(&points, "", None), Err(FigureError::NotFinite { what: "f2 of point", index: 3 }));
         points[3].f2 = -1.0;
-        assert!(matches!(
-            pareto(&points, "", None),
-            Err(FigureError::OutOfRange { index: 3, .. })
-        ));
+        assert!(matches!(pareto(&points, "", None), Err(FigureError::OutOfRange { index: 3, .. })));
     }
 }

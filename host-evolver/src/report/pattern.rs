@@ -3,9 +3,7 @@
 use super::error::{FigureError, finite, finite_lines};
 use super::legend::{Key, legend};
 use super::map::{View, Window};
-use super::style::{
-    BLUE, BLUE_TINT, COLUMN, GREEN, GREY, INK, LABEL, PAGE, PAGE_HEIGHT, SMALL, THIN, VERMILLION,
-};
+use super::style::{BLUE, BLUE_TINT, COLUMN, GREEN, GREY, INK, LABEL, PAGE, PAGE_HEIGHT, SMALL, THIN, VERMILLION};
 use super::svg::{Anchor, Font, Mark, Paint, Rect, Svg};
 use super::text::width;
 
@@ -61,21 +59,10 @@ const CAPTION: f64 = 12.0;
 /// No panels, more than 25, coordinates that are not finite, an empty region or window.
 pub fn pattern(figure: &PatternFigure) -> Result<String, FigureError> {
     check(figure)?;
-    let windows: Vec<Window> = figure
-        .panels
-        .iter()
-        .map(|p| p.window.unwrap_or(figure.region))
-        .collect();
-    let shape = windows
-        .iter()
-        .map(|w| w.height() / w.width())
-        .fold(0.0, f64::max)
-        .clamp(0.3, 1.5);
+    let windows: Vec<Window> = figure.panels.iter().map(|p| p.window.unwrap_or(figure.region)).collect();
+    let shape = windows.iter().map(|w| w.height() / w.width()).fold(0.0, f64::max).clamp(0.3, 1.5);
     let count = figure.panels.len();
-    let columns = figure
-        .columns
-        .map_or_else(|| columns(count, shape), |c| c.clamp(1, 6))
-        .min(count);
+    let columns = figure.columns.map_or_else(|| columns(count, shape), |c| c.clamp(1, 6)).min(count);
     let total = if columns == 1 { COLUMN } else { PAGE };
     let w = (total - 2.0 - GAP * (columns - 1) as f64) / columns as f64;
     let h = w * shape;
@@ -84,16 +71,11 @@ pub fn pattern(figure: &PatternFigure) -> Result<String, FigureError> {
         .enumerate()
         .map(|(i, window)| {
             let (row, column) = ((i / columns) as f64, (i % columns) as f64);
-            let at = (
-                1.0 + column * (w + GAP),
-                CAPTION + row * (h + CAPTION + GAP * 0.6),
-            );
+            let at = (1.0 + column * (w + GAP), CAPTION + row * (h + CAPTION + GAP * 0.6));
             View::new(window, Rect::new(at.0, at.1, w, h))
         })
         .collect();
-    let one_scale = views
-        .iter()
-        .all(|v| (v.scale - views[0].scale).abs() < 1e-6 * views[0].scale);
+    let one_scale = views.iter().all(|v| (v.scale - views[0].scale).abs() < 1e-6 * views[0].scale);
     let mut svg = Svg::default();
     for (i, (panel, view)) in figure.panels.iter().zip(&views).enumerate() {
         draw_panel(&mut svg, figure, panel, view, i, !one_scale);
@@ -114,18 +96,12 @@ fn check(figure: &PatternFigure) -> Result<(), FigureError> {
         return Err(FigureError::Empty { what: "panels" });
     }
     if count > PANELS {
-        return Err(FigureError::TooMany {
-            what: "panels",
-            found: count,
-            limit: PANELS,
-        });
+        return Err(FigureError::TooMany { what: "panels", found: count, limit: PANELS });
     }
     figure.region.check("region", 0)?;
     finite_lines("path", &figure.paths)?;
     for (index, panel) in figure.panels.iter().enumerate() {
-        panel
-            .window
-            .map_or(Ok(()), |w| w.check("window of panel", index))?;
+        panel.window.map_or(Ok(()), |w| w.check("window of panel", index))?;
         let in_panel = |e: FigureError| e.within("a coordinate of panel", index);
         for lines in [&panel.walls, &panel.contours, &panel.leak_outlines] {
             finite_lines("", lines).map_err(in_panel)?;
@@ -148,20 +124,10 @@ fn columns(count: usize, shape: f64) -> usize {
         let too_high = if height > PAGE_HEIGHT { 100.0 } else { 0.0 };
         (c * rows - count) as f64 + height / 200.0 + too_high
     };
-    (3..=5)
-        .rev()
-        .min_by(|a, b| cost(*a).total_cmp(&cost(*b)))
-        .unwrap_or(5)
+    (3..=5).rev().min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(5)
 }
 
-fn draw_panel(
-    svg: &mut Svg,
-    figure: &PatternFigure,
-    panel: &Panel,
-    view: &View,
-    index: usize,
-    own_bar: bool,
-) {
+fn draw_panel(svg: &mut Svg, figure: &PatternFigure, panel: &Panel, view: &View, index: usize, own_bar: bool) {
     let rect = view.rect;
     let letter = format!("({})", char::from(b'a' + (index % PANELS) as u8));
     svg.open("panel", &format!("{letter} {}", panel.title));
@@ -190,11 +156,7 @@ fn draw_panel(
     let base = rect.y - 3.2;
     let font = Font::new(LABEL, Anchor::Start);
     svg.text(&letter, (rect.x, base), &font.clone().bold());
-    svg.text(
-        &panel.title,
-        (rect.x + width(&letter, LABEL, true) + 3.0, base),
-        &font,
-    );
+    svg.text(&panel.title, (rect.x + width(&letter, LABEL, true) + 3.0, base), &font);
     if own_bar {
         let bar = view.scale_bar_width(24.0);
         view.scale_bar(svg, rect.right() - bar, base, 24.0);
@@ -226,38 +188,23 @@ fn entries(figure: &PatternFigure) -> Vec<(Key, &'static str)> {
         out.push((Key::Area(ring()), "pattern"));
     }
     if any(&|p| !p.candidates.is_empty()) {
-        out.push((
-            Key::Mark(Mark::Circle, 0.9, Paint::fill(BLUE)),
-            "candidate point",
-        ));
+        out.push((Key::Mark(Mark::Circle, 0.9, Paint::fill(BLUE)), "candidate point"));
     }
     if any(&|p| p.targets.iter().any(|t| t.enclosed)) {
-        out.push((
-            Key::Mark(Mark::Circle, 2.1, Paint::fill(GREEN)),
-            "target, enclosed",
-        ));
+        out.push((Key::Mark(Mark::Circle, 2.1, Paint::fill(GREEN)), "target, enclosed"));
     }
     if any(&|p| p.targets.iter().any(|t| !t.enclosed)) {
         let cross = Paint::stroke(VERMILLION, 1.2);
-        out.push((
-            Key::Mark(Mark::RingedCross, 1.7, cross),
-            "target, not enclosed",
-        ));
+        out.push((Key::Mark(Mark::RingedCross, 1.7, cross), "target, not enclosed"));
     }
     if any(&|p| !p.leak_outlines.is_empty()) {
         out.push((Key::Line(leak()), "leak"));
     }
     if !figure.paths.is_empty() {
-        out.push((
-            Key::Line(Paint::stroke(GREY, 0.6).dashed(&[2.0, 1.6])),
-            "target path",
-        ));
+        out.push((Key::Line(Paint::stroke(GREY, 0.6).dashed(&[2.0, 1.6])), "target path"));
     }
     if any(&|p| !p.walls.is_empty()) {
-        out.push((
-            Key::Area(Paint::stroke(GREY, 0.5).filled(super::style::WALL)),
-            "wall",
-        ));
+        out.push((Key::Area(Paint::stroke(GREY, 0.5).filled(super::style::WALL)), "wall"));
     }
     out
 }
@@ -271,18 +218,12 @@ mod tests {
         let panel = |i: usize| Panel {
             title: format!("t < {i} s"),
             walls: vec![vec![[6.0, 14.0], [14.0, 14.0], [14.0, 20.0]]],
-            targets: vec![Target {
-                position: [i as f64, 10.0],
-                enclosed: i.is_multiple_of(2),
-            }],
+            targets: vec![Target { position: [i as f64, 10.0], enclosed: i.is_multiple_of(2) }],
             contours: vec![vec![[1.0, 9.0], [3.0, 9.0], [2.0, 11.0]]],
             ..Panel::default()
         };
         PatternFigure {
-            region: Window {
-                min: [0.0, 0.0],
-                max: [20.0, 20.0],
-            },
+            region: Window { min: [0.0, 0.0], max: [20.0, 20.0] },
             paths: vec![vec![[3.0, 10.0], [17.0, 10.0]]],
             panels: (0..count).map(panel).collect(),
             columns: None,
@@ -297,10 +238,7 @@ mod tests {
             let document = read(&svg);
             assert_eq!(document.count("class=\"panel\""), count);
             assert!(document.says("(a)") && document.says(&format!("t < {} s", count - 1)));
-            assert!(
-                document.texts.iter().any(|t| t.ends_with(" m")),
-                "a scale bar"
-            );
+            assert!(document.texts.iter().any(|t| t.ends_with(" m")), "a scale bar");
             assert_eq!(document.says("target, not enclosed"), count > 1);
         }
     }
@@ -314,39 +252,20 @@ mod tests {
     #[test]
     fn windows_of_other_sizes_bring_their_own_bar() {
         let mut two = figure(2);
-        two.panels[1].window = Some(Window {
-            min: [4.0, 8.0],
-            max: [8.0, 12.0],
-        });
-        let bars = read(&pattern(&two).unwrap())
-            .texts
-            .iter()
-            .filter(|t| t.ends_with(" m"))
-            .count();
+        two.panels[1].window = Some(Window { min: [4.0, 8.0], max: [8.0, 12.0] });
+        let bars = read(&pattern(&two).unwrap()).texts.iter().filter(|t| t.ends_with(" m")).count();
         assert_eq!(bars, 2);
     }
 
     #[test]
     fn bad_figures_are_refused() {
-        assert_eq!(
-            pattern(&figure(0)),
-            Err(FigureError::Empty { what: "panels" })
-        );
-        assert!(matches!(
-            pattern(&figure(26)),
-            Err(FigureError::TooMany { found: 26, .. })
-        ));
+        assert_eq!(pattern(&figure(0)), Err(FigureError::Empty { what: "panels" }));
+        assert!(matches!(pattern(&figure(26)), Err(FigureError::TooMany { found: 26, .. })));
         let mut bad = figure(3);
         bad.panels[2].contours[0][1][0] = f64::NAN;
-        let expected = FigureError::NotFinite {
-            what: "a coordinate of panel",
-            index: 2,
-        };
+        let expected = FigureError::NotFinite { what: "a coordinate of panel", index: 2 };
         assert_eq!(pattern(&bad), Err(expected));
         bad.region.max[0] = 0.0;
-        assert!(matches!(
-            pattern(&bad),
-            Err(FigureError::OutOfRange { what: "region", .. })
-        ));
+        assert!(matches!(pattern(&bad), Err(FigureError::OutOfRange { what: "region", .. })));
     }
 }

@@ -14,10 +14,7 @@ const OUTSIDE: f64 = 1e5;
 
 impl Taken {
     pub fn new(frame: Rect) -> Self {
-        Self {
-            frame,
-            areas: Vec::new(),
-        }
+        Self { frame, areas: Vec::new() }
     }
 
     pub fn add(&mut self, area: Rect, cost: f64) {
@@ -38,16 +35,8 @@ impl Taken {
 
     /// What a label at `rect` would cost.
     pub fn cost(&self, rect: &Rect) -> f64 {
-        let covered: f64 = self
-            .areas
-            .iter()
-            .map(|(area, cost)| area.overlap(rect) * cost)
-            .sum();
-        if self.frame.holds(rect) {
-            covered
-        } else {
-            covered + OUTSIDE
-        }
+        let covered: f64 = self.areas.iter().map(|(area, cost)| area.overlap(rect) * cost).sum();
+        if self.frame.holds(rect) { covered } else { covered + OUTSIDE }
     }
 
     /// What a thin line would cost: as if it were two points wide.
@@ -74,10 +63,7 @@ fn steps(from: (f64, f64), to: (f64, f64)) -> impl Iterator<Item = (f64, f64)> {
     let count = (length / 2.0).clamp(1.0, 2000.0) as u32;
     (0..=count).map(move |i| {
         let share = f64::from(i) / f64::from(count);
-        (
-            from.0 + (to.0 - from.0) * share,
-            from.1 + (to.1 - from.1) * share,
-        )
+        (from.0 + (to.0 - from.0) * share, from.1 + (to.1 - from.1) * share)
     })
 }
 

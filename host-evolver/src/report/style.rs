@@ -67,15 +67,10 @@ pub fn time_colour(share: f64) -> String {
         [31.0, 161.0, 135.0],
         [96.0, 196.0, 96.0],
     ];
-    let share = if share.is_finite() {
-        share.clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let place = share * (RAMP.len() - 1) as f64;
     let low = (place as usize).min(RAMP.len() - 2);
     let part = place - low as f64;
-    let channel =
-        |c: usize| (RAMP[low][c] + part * (RAMP[low + 1][c] - RAMP[low][c])).round() as u8;
+    let channel = |c: usize| (RAMP[low][c] + part * (RAMP[low + 1][c] - RAMP[low][c])).round() as u8;
     format!("#{:02X}{:02X}{:02X}", channel(0), channel(1), channel(2))
 }

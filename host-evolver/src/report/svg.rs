@@ -13,16 +13,7 @@ pub(super) struct Svg {
 
 impl Svg {
     pub fn line(&mut self, from: (f64, f64), to: (f64, f64), paint: &Paint) {
-        self.path(
-            &format!(
-                "M{} {}L{} {}",
-                num(from.0),
-                num(from.1),
-                num(to.0),
-                num(to.1)
-            ),
-            paint,
-        );
+        self.path(&format!("M{} {}L{} {}", num(from.0), num(from.1), num(to.0), num(to.1)), paint);
     }
 
     pub fn path(&mut self, d: &str, paint: &Paint) {
@@ -35,11 +26,7 @@ impl Svg {
 
     pub fn circle(&mut self, at: (f64, f64), r: f64, paint: &Paint) {
         let (x, y, r) = (num(at.0), num(at.1), num(r));
-        let _ = writeln!(
-            self.body,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>",
-            paint.attributes()
-        );
+        let _ = writeln!(self.body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {}/>", paint.attributes());
     }
 
     pub fn rect(&mut self, rect: &Rect, corner: f64, paint: &Paint) {
@@ -105,11 +92,7 @@ impl Svg {
             let mut attributes = String::new();
             let sub = run.kind == Kind::Sub;
             if sub != low {
-                let _ = write!(
-                    attributes,
-                    " dy=\"{}\"",
-                    num(if sub { drop } else { -drop })
-                );
+                let _ = write!(attributes, " dy=\"{}\"", num(if sub { drop } else { -drop }));
             }
             if sub {
                 let _ = write!(attributes, " font-size=\"{}\"", num(font.size * SUB));
@@ -121,11 +104,7 @@ impl Svg {
             if attributes.is_empty() {
                 self.body.push_str(&escape(&run.text));
             } else {
-                let _ = write!(
-                    self.body,
-                    "<tspan{attributes}>{}</tspan>",
-                    escape(&run.text)
-                );
+                let _ = write!(self.body, "<tspan{attributes}>{}</tspan>", escape(&run.text));
             }
         }
         self.body.push_str("</text>\n");
@@ -188,13 +167,7 @@ pub(super) fn poly(points: &[(f64, f64)], closed: bool) -> String {
         if near && i + 1 < points.len() {
             continue;
         }
-        let _ = write!(
-            d,
-            "{}{} {}",
-            if d.is_empty() { 'M' } else { 'L' },
-            num(x),
-            num(y)
-        );
+        let _ = write!(d, "{}{} {}", if d.is_empty() { 'M' } else { 'L' }, num(x), num(y));
         last = Some((x, y));
     }
     if closed && !d.is_empty() {
@@ -206,16 +179,8 @@ pub(super) fn poly(points: &[(f64, f64)], closed: bool) -> String {
 /// A number with at most two decimals, no trailing zeros and no minus zero.
 pub(super) fn num(value: f64) -> String {
     let text = format!("{value:.2}");
-    let text = if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.')
-    } else {
-        &text
-    };
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// Text that may stand in an element or in an attribute; control characters, which XML forbids, become spaces.

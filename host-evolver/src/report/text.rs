@@ -39,28 +39,17 @@ pub(super) fn runs(text: &str) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut push = |text: &[char], kind: Kind, fresh: bool| match runs.last_mut() {
         Some(last) if last.kind == kind && !fresh => last.text.extend(text),
-        _ => runs.push(Run {
-            text: text.iter().collect(),
-            kind,
-        }),
+        _ => runs.push(Run { text: text.iter().collect(), kind }),
     };
     let mut at = 0;
     while at < chars.len() {
         let c = chars[at];
         let starts_word = at == 0 || !chars[at - 1].is_alphanumeric();
-        let digits = chars[at + 1..]
-            .iter()
-            .take_while(|d| d.is_ascii_digit() || is_low_digit(**d))
-            .count();
-        let next_is_letter = chars
-            .get(at + 1 + digits)
-            .is_some_and(|d| d.is_alphabetic());
+        let digits = chars[at + 1..].iter().take_while(|d| d.is_ascii_digit() || is_low_digit(**d)).count();
+        let next_is_letter = chars.get(at + 1 + digits).is_some_and(|d| d.is_alphabetic());
         if c.is_alphabetic() && starts_word && digits > 0 && !next_is_letter {
             push(&[c], Kind::Symbol, true);
-            let index: Vec<char> = chars[at + 1..=at + digits]
-                .iter()
-                .map(|d| plain_digit(*d))
-                .collect();
+            let index: Vec<char> = chars[at + 1..=at + digits].iter().map(|d| plain_digit(*d)).collect();
             push(&index, Kind::Sub, true);
             at += 1 + digits;
         } else {
@@ -98,11 +87,7 @@ fn char_width(c: char) -> f64 {
 
 /// Width of a run at a font size, in the size's unit.
 pub(super) fn run_width(run: &Run, size: f64) -> f64 {
-    let size = if run.kind == Kind::Sub {
-        size * SUB
-    } else {
-        size
-    };
+    let size = if run.kind == Kind::Sub { size * SUB } else { size };
     run.text.chars().map(char_width).sum::<f64>() * size
 }
 
@@ -125,11 +110,7 @@ pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
             line.push_str(part);
         }
     }
-    lines
-        .iter()
-        .map(|line| line.trim().to_owned())
-        .filter(|line| !line.is_empty())
-        .collect()
+    lines.iter().map(|line| line.trim().to_owned()).filter(|line| !line.is_empty()).collect()
 }
 
 #[cfg(test)]
@@ -137,10 +118,7 @@ mod tests {
     use super::*;
 
     fn kinds(text: &str) -> Vec<(String, Kind)> {
-        runs(text)
-            .into_iter()
-            .map(|run| (run.text, run.kind))
-            .collect()
+        runs(text).into_iter().map(|run| (run.text, run.kind)).collect()
     }
 
     #[test]

@@ -66,42 +66,23 @@ pub fn trace(figure: &TraceFigure) -> Result<String, FigureError> {
     let mut svg = Svg::default();
     let room = (PAGE - LEFT - 9.0, 285.0);
     let shape = figure.window.height() / figure.window.width();
-    let (w, h) = if shape * room.0 <= room.1 {
-        (room.0, shape * room.0)
-    } else {
-        (room.1 / shape, room.1)
-    };
+    let (w, h) = if shape * room.0 <= room.1 { (room.0, shape * room.0) } else { (room.1 / shape, room.1) };
     // A window that is much higher than wide is shown with more of the world beside it.
     let w = w.max(room.0 * 0.5);
-    let view = View::new(
-        &figure.window,
-        Rect::new(LEFT + (room.0 - w) / 2.0, 4.0, w, h),
-    );
+    let view = View::new(&figure.window, Rect::new(LEFT + (room.0 - w) / 2.0, 4.0, w, h));
     map(&mut svg, figure, &view);
     let mut base = view.rect.bottom() + 11.0;
     let x = view.scale_bar(&mut svg, LEFT, base, 60.0) + 16.0;
     let enlarged = figure.body_radius * view.scale < SEEN;
-    (base, _) = legend(
-        &mut svg,
-        x,
-        base,
-        PAGE - 4.0,
-        SMALL,
-        &entries(figure, enlarged),
-    );
-    let names: Vec<String> = (1..=figure.gaps.len())
-        .map(|i| format!("target {i}"))
-        .collect();
+    (base, _) = legend(&mut svg, x, base, PAGE - 4.0, SMALL, &entries(figure, enlarged));
+    let names: Vec<String> = (1..=figure.gaps.len()).map(|i| format!("target {i}")).collect();
     if names.len() > 1 {
         let keys: Vec<(Key, &str)> = names
             .iter()
             .enumerate()
             .map(|(i, name)| {
                 let (colour, dash) = SERIES[i % SERIES.len()];
-                (
-                    Key::Line(Paint::stroke(colour, DATA).dashed(dash)),
-                    name.as_str(),
-                )
+                (Key::Line(Paint::stroke(colour, DATA).dashed(dash)), name.as_str())
             })
             .collect();
         (base, _) = legend(&mut svg, LEFT, base + 14.0, PAGE - 4.0, SMALL, &keys);
@@ -113,10 +94,7 @@ pub fn trace(figure: &TraceFigure) -> Result<String, FigureError> {
 fn check(figure: &TraceFigure) -> Result<(), FigureError> {
     figure.window.check("window", 0)?;
     for (what, empty) in [
-        (
-            "robot trajectories",
-            figure.trajectories.iter().all(Vec::is_empty),
-        ),
+        ("robot trajectories", figure.trajectories.iter().all(Vec::is_empty)),
         ("instants", figure.instants.is_empty()),
         ("angular gaps", figure.gaps.is_empty()),
     ] {
@@ -125,69 +103,34 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
         }
     }
     let expected = figure.times.len();
-    for (what, values) in figure
-        .gaps
-        .iter()
-        .map(|g| ("angular gap", g))
-        .chain([("radial error", &figure.radial_error)])
+    for (what, values) in figure.gaps.iter().map(|g| ("angular gap", g)).chain([("radial error", &figure.radial_error)])
     {
         if values.len() != expected {
-            return Err(FigureError::Length {
-                what,
-                found: values.len(),
-                expected,
-            });
+            return Err(FigureError::Length { what, found: values.len(), expected });
         }
         finite(what, values.iter().copied())?;
     }
     finite("time", figure.times.iter().copied())?;
     if expected < 2 {
-        return Err(FigureError::Length {
-            what: "times",
-            found: expected,
-            expected: 2,
-        });
+        return Err(FigureError::Length { what: "times", found: expected, expected: 2 });
     }
     if let Some(i) = figure.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(FigureError::OutOfRange {
-            what: "time",
-            index: i + 1,
-            expected: "later than the one before",
-        });
+        return Err(FigureError::OutOfRange { what: "time", index: i + 1, expected: "later than the one before" });
     }
     let lengths = [figure.body_radius, figure.radial_band];
     finite("radius or band", lengths)?;
     within("radius or band", lengths, (0.0, f64::INFINITY), "0 or more")?;
     for gaps in &figure.gaps {
-        within(
-            "angular gap",
-            gaps.iter().copied(),
-            (0.0, 360.001),
-            "from 0 to 360 degrees",
-        )?;
+        within("angular gap", gaps.iter().copied(), (0.0, 360.001), "from 0 to 360 degrees")?;
     }
-    within(
-        "radial error",
-        figure.radial_error.iter().copied(),
-        (0.0, f64::INFINITY),
-        "0 or more",
-    )?;
+    within("radial error", figure.radial_error.iter().copied(), (0.0, f64::INFINITY), "0 or more")?;
     finite_lines("wall", &figure.walls)?;
     finite_lines("target path", &figure.target_paths)?;
     finite_lines("trajectory", &figure.trajectories)?;
     for (index, instant) in figure.instants.iter().enumerate() {
         let named = |e: FigureError| e.within("instant", index);
-        let poses = instant
-            .robots
-            .iter()
-            .flat_map(|r| [r.position[0], r.position[1], r.heading]);
-        finite(
-            "",
-            poses
-                .chain(instant.targets.iter().flatten().copied())
-                .chain([instant.time]),
-        )
-        .map_err(named)?;
+        let poses = instant.robots.iter().flat_map(|r| [r.position[0], r.position[1], r.heading]);
+        finite("", poses.chain(instant.targets.iter().flatten().copied()).chain([instant.time])).map_err(named)?;
         finite_lines("", &instant.contours).map_err(named)?;
     }
     Ok(())
@@ -202,18 +145,12 @@ mod tests {
         let ring: Vec<[f64; 2]> = vec![[4.0, 9.0], [6.0, 9.0], [5.0, 11.0]];
         let instant = |time: f64| Instant {
             time,
-            robots: vec![Pose {
-                position: [4.0, 9.0],
-                heading: 1.0,
-            }],
+            robots: vec![Pose { position: [4.0, 9.0], heading: 1.0 }],
             targets: vec![[5.0, 10.0]],
             contours: vec![ring.clone()],
         };
         TraceFigure {
-            window: Window {
-                min: [0.0, 5.0],
-                max: [20.0, 15.0],
-            },
+            window: Window { min: [0.0, 5.0], max: [20.0, 15.0] },
             walls: vec![vec![[6.0, 14.0], [14.0, 14.0], [14.0, 20.0]]],
             target_paths: vec![vec![[3.0, 10.0], [17.0, 10.0]]],
             trajectories: vec![ring.clone()],
@@ -231,14 +168,7 @@ mod tests {
         let svg = trace(&figure()).unwrap();
         assert_eq!(svg, trace(&figure()).unwrap());
         let document = read(&svg);
-        for words in [
-            "Time (s)",
-            "Largest gap (°)",
-            "Radial error (m)",
-            "40 s",
-            "robot (enlarged)",
-            "target 2",
-        ] {
+        for words in ["Time (s)", "Largest gap (°)", "Radial error (m)", "40 s", "robot (enlarged)", "target 2"] {
             assert!(document.says(words), "{words}");
         }
         assert_eq!(document.count("class=\"map\""), 1);
@@ -251,36 +181,11 @@ mod tests {
             change(&mut bad);
             trace(&bad).unwrap_err()
         };
-        assert_eq!(
-            refused(&|f| f.instants.clear()),
-            FigureError::Empty { what: "instants" }
-        );
-        assert_eq!(
-            refused(&|f| f.gaps[1][2] = f64::NAN),
-            FigureError::NotFinite {
-                what: "angular gap",
-                index: 2
-            }
-        );
-        let expected = FigureError::NotFinite {
-            what: "instant",
-            index: 1,
-        };
-        assert_eq!(
-            refused(&|f| f.instants[1].robots[0].heading = f64::INFINITY),
-            expected
-        );
-        assert!(matches!(
-            refused(&|f| f.times[1] = 40.0),
-            FigureError::OutOfRange { index: 2, .. }
-        ));
-        assert!(matches!(
-            refused(&|f| f.radial_error.truncate(2)),
-            FigureError::Length {
-                found: 2,
-                expected: 3,
-                ..
-            }
-        ));
+        assert_eq!(refused(&|f| f.instants.clear()), FigureError::Empty { what: "instants" });
+        assert_eq!(refused(&|f| f.gaps[1][2] = f64::NAN), FigureError::NotFinite { what: "angular gap", index: 2 });
+        let expected = FigureError::NotFinite { what: "instant", index: 1 };
+        assert_eq!(refused(&|f| f.instants[1].robots[0].heading = f64::INFINITY), expected);
+        assert!(matches!(refused(&|f| f.times[1] = 40.0), FigureError::OutOfRange { index: 2, .. }));
+        assert!(matches!(refused(&|f| f.radial_error.truncate(2)), FigureError::Length { found: 2, expected: 3, .. }));
     }
 }

@@ -14,15 +14,8 @@ pub(super) const SEEN: f64 = 1.9;
 /// Where a time lies between the first and the last instant, from 0 to 1.
 pub(super) fn share(figure: &TraceFigure, time: f64) -> f64 {
     let times = || figure.instants.iter().map(|i| i.time);
-    let (lo, hi) = (
-        times().fold(f64::INFINITY, f64::min),
-        times().fold(f64::NEG_INFINITY, f64::max),
-    );
-    if hi > lo {
-        (time - lo) / (hi - lo)
-    } else {
-        0.0
-    }
+    let (lo, hi) = (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max));
+    if hi > lo { (time - lo) / (hi - lo) } else { 0.0 }
 }
 
 /// Draws the map.
@@ -39,10 +32,7 @@ pub(super) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
     for instant in &figure.instants {
         let contours = view.path(&instant.contours, true);
         if !contours.is_empty() {
-            svg.path(
-                &contours,
-                &Paint::stroke(&time_colour(share(figure, instant.time)), 0.9),
-            );
+            svg.path(&contours, &Paint::stroke(&time_colour(share(figure, instant.time)), 0.9));
         }
     }
     let mut taken = Taken::new(view.rect);
@@ -51,10 +41,7 @@ pub(super) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
         for robot in &instant.robots {
             let at = view.place(robot.position);
             let r = (figure.body_radius * view.scale).max(SEEN);
-            let nose = (
-                at.0 + 2.2 * r * libm::cos(robot.heading),
-                at.1 - 2.2 * r * libm::sin(robot.heading),
-            );
+            let nose = (at.0 + 2.2 * r * libm::cos(robot.heading), at.1 - 2.2 * r * libm::sin(robot.heading));
             svg.line(at, nose, &Paint::stroke(&colour, 0.8));
             svg.circle(at, r, &Paint::stroke("#FFFFFF", 0.3).filled(&colour));
             taken.add_mark(at, 3.5, 3.0);
@@ -79,28 +66,11 @@ pub(super) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
 }
 
 /// Writes an instant's time beside its robots and pattern where there is room.
-fn time_label(
-    svg: &mut Svg,
-    figure: &TraceFigure,
-    instant: &Instant,
-    view: &View,
-    taken: &mut Taken,
-) {
-    let shapes = instant
-        .contours
-        .iter()
-        .flatten()
-        .chain(instant.robots.iter().map(|r| &r.position));
-    let points: Vec<(f64, f64)> = shapes
-        .chain(&instant.targets)
-        .map(|p| view.place(*p))
-        .collect();
-    let (mut left, mut right, mut top, mut bottom) = (
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-    );
+fn time_label(svg: &mut Svg, figure: &TraceFigure, instant: &Instant, view: &View, taken: &mut Taken) {
+    let shapes = instant.contours.iter().flatten().chain(instant.robots.iter().map(|r| &r.position));
+    let points: Vec<(f64, f64)> = shapes.chain(&instant.targets).map(|p| view.place(*p)).collect();
+    let (mut left, mut right, mut top, mut bottom) =
+        (f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY);
     for (x, y) in points {
         (left, right) = (left.min(x), right.max(x));
         (top, bottom) = (top.min(y), bottom.max(y));
@@ -109,9 +79,7 @@ fn time_label(
         return;
     }
     let words = format!("{} s", num(instant.time));
-    let font = Font::new(LABEL, Anchor::Middle)
-        .bold()
-        .colour(&time_colour(share(figure, instant.time)));
+    let font = Font::new(LABEL, Anchor::Middle).bold().colour(&time_colour(share(figure, instant.time)));
     let (w, h) = (font.width(&words) + 4.0, LABEL + 3.0);
     let (middle, centre) = ((left + right - w) / 2.0, (top + bottom - h) / 2.0);
     // In line with the middle if at all possible: there it is plain what the words belong to.
@@ -142,14 +110,7 @@ fn time_label(
 pub(super) fn entries(figure: &TraceFigure, enlarged: bool) -> Vec<(Key, &'static str)> {
     let early = time_colour(0.0);
     let mut out = vec![
-        (
-            Key::Mark(Mark::Circle, SEEN, Paint::fill(&early)),
-            if enlarged {
-                "robot (enlarged)"
-            } else {
-                "robot"
-            },
-        ),
+        (Key::Mark(Mark::Circle, SEEN, Paint::fill(&early)), if enlarged { "robot (enlarged)" } else { "robot" }),
         (Key::Line(Paint::stroke("#BDBDBD", 0.6)), "robot path"),
     ];
     if figure.instants.iter().any(|i| !i.contours.is_empty()) {
@@ -159,10 +120,7 @@ pub(super) fn entries(figure: &TraceFigure, enlarged: bool) -> Vec<(Key, &'stati
         out.push((Key::Mark(Mark::Circle, 2.1, Paint::fill(GREEN)), "target"));
     }
     if !figure.target_paths.is_empty() {
-        out.push((
-            Key::Line(Paint::stroke(INK, 0.6).dashed(&[2.5, 2.0])),
-            "target path",
-        ));
+        out.push((Key::Line(Paint::stroke(INK, 0.6).dashed(&[2.5, 2.0])), "target path"));
     }
     if !figure.walls.is_empty() {
         out.push((Key::Area(Paint::stroke(GREY, 0.5).filled(WALL)), "wall"));

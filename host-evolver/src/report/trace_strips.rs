@@ -14,31 +14,15 @@ const GAP_LIMIT: f64 = 90.0;
 /// Draws the gaps in `rect` and the error below it; returns where the lower one ends.
 pub(super) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<f64, FigureError> {
     let first = gap_chart(figure, rect);
-    let second = error_chart(
-        figure,
-        Rect {
-            y: rect.bottom() + 11.0,
-            ..rect
-        },
-    );
+    let second = error_chart(figure, Rect { y: rect.bottom() + 11.0, ..rect });
     let series = |chart: &Chart, values: &[f64], (colour, dash): (&'static str, &'static [f64])| {
         let point = |(t, v): (&f64, &f64)| (*t, v.clamp(chart.y.lo, chart.y.hi));
         let points = figure.times.iter().zip(values).map(point).collect();
-        Line {
-            points,
-            colour,
-            width: 1.0,
-            dash,
-        }
+        Line { points, colour, width: 1.0, dash }
     };
     let level = |chart: &Chart, value: f64| {
         let points = vec![(chart.x.lo, value), (chart.x.hi, value)];
-        Line {
-            points,
-            colour: GREY,
-            width: THIN,
-            dash: &[3.0, 2.0],
-        }
+        Line { points, colour: GREY, width: THIN, dash: &[3.0, 2.0] }
     };
     let mut lines = vec![level(&first, GAP_LIMIT)];
     for (i, values) in figure.gaps.iter().enumerate() {
@@ -61,41 +45,16 @@ fn time_axis(figure: &TraceFigure) -> Axis {
 
 fn gap_chart(figure: &TraceFigure, rect: Rect) -> Chart {
     let most = figure.gaps.iter().flatten().copied().fold(0.0, f64::max);
-    let top = [120.0, 180.0, 270.0, 360.0]
-        .into_iter()
-        .find(|t| most <= *t)
-        .unwrap_or(360.0);
-    let step = if top > 200.0 {
-        90.0
-    } else {
-        30.0_f64.max(top / 4.0)
-    };
+    let top = [120.0, 180.0, 270.0, 360.0].into_iter().find(|t| most <= *t).unwrap_or(360.0);
+    let step = if top > 200.0 { 90.0 } else { 30.0_f64.max(top / 4.0) };
     let y = Axis::stepped(0.0, top, step);
-    Chart {
-        rect,
-        x: time_axis(figure),
-        y,
-        x_label: "",
-        y_label: "Largest gap (°)",
-        x_numbers: false,
-    }
+    Chart { rect, x: time_axis(figure), y, x_label: "", y_label: "Largest gap (°)", x_numbers: false }
 }
 
 fn error_chart(figure: &TraceFigure, rect: Rect) -> Chart {
-    let most = figure
-        .radial_error
-        .iter()
-        .copied()
-        .fold(figure.radial_band * 1.3, f64::max);
+    let most = figure.radial_error.iter().copied().fold(figure.radial_band * 1.3, f64::max);
     let y = Axis::linear(0.0, if most > 0.0 { most * 1.05 } else { 1.0 }, 3.0);
-    Chart {
-        rect,
-        x: time_axis(figure),
-        y,
-        x_label: "Time (s)",
-        y_label: "Radial error (m)",
-        x_numbers: true,
-    }
+    Chart { rect, x: time_axis(figure), y, x_label: "Time (s)", y_label: "Radial error (m)", x_numbers: true }
 }
 
 /// Marks the moments that the map shows.
@@ -116,14 +75,6 @@ fn moments(svg: &mut Svg, figure: &TraceFigure, chart: &Chart) {
 fn note(svg: &mut Svg, chart: &Chart, value: f64, words: &str) {
     let (x, y) = chart.place(chart.x.hi, value);
     let w = width(words, SMALL, false);
-    svg.rect(
-        &Rect::new(x - w - 4.0, y - 9.4, w + 3.0, 8.4),
-        0.0,
-        &Paint::fill("#FFFFFF"),
-    );
-    svg.text(
-        words,
-        (x - 2.5, y - 2.6),
-        &Font::new(SMALL, Anchor::End).colour(GREY),
-    );
+    svg.rect(&Rect::new(x - w - 4.0, y - 9.4, w + 3.0, 8.4), 0.0, &Paint::fill("#FFFFFF"));
+    svg.text(words, (x - 2.5, y - 2.6), &Font::new(SMALL, Anchor::End).colour(GREY));
 }

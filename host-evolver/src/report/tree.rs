@@ -44,23 +44,13 @@ pub fn tree(root: &SyntaxTree) -> Result<String, FigureError> {
         nodes += 1;
         depth = depth.max(level);
         if depth > DEPTH {
-            return Err(FigureError::TooMany {
-                what: "levels",
-                found: depth,
-                limit: DEPTH,
-            });
+            return Err(FigureError::TooMany { what: "levels", found: depth, limit: DEPTH });
         }
         if nodes > NODES {
-            return Err(FigureError::TooMany {
-                what: "nodes",
-                found: nodes,
-                limit: NODES,
-            });
+            return Err(FigureError::TooMany { what: "nodes", found: nodes, limit: NODES });
         }
         if node.label.is_empty() {
-            return Err(FigureError::Empty {
-                what: "label of a tree node",
-            });
+            return Err(FigureError::Empty { what: "label of a tree node" });
         }
         waiting.extend(node.children.iter().map(|child| (child, level + 1)));
     }
@@ -71,15 +61,8 @@ pub fn tree(root: &SyntaxTree) -> Result<String, FigureError> {
     let top = 4.0 + BOX_HEIGHT / 2.0;
     edges(&mut svg, &placed, 4.0 - left, top);
     shapes(&mut svg, &placed, 4.0 - left, top);
-    let foot = if depth == 1 && root.children.is_empty() {
-        BOX_HEIGHT / 2.0
-    } else {
-        RADIUS
-    };
-    Ok(svg.finish(
-        right - left + 8.0,
-        top + (depth - 1) as f64 * LEVEL + foot.max(bottom(&placed, depth)) + 4.0,
-    ))
+    let foot = if depth == 1 && root.children.is_empty() { BOX_HEIGHT / 2.0 } else { RADIUS };
+    Ok(svg.finish(right - left + 8.0, top + (depth - 1) as f64 * LEVEL + foot.max(bottom(&placed, depth)) + 4.0))
 }
 
 /// Half the height of the lowest level.
@@ -88,16 +71,9 @@ fn bottom(placed: &Placed<'_>, depth: usize) -> f64 {
         if level == 1 {
             return !is_input(placed.node);
         }
-        placed
-            .children
-            .iter()
-            .any(|child| has_box(child, level - 1))
+        placed.children.iter().any(|child| has_box(child, level - 1))
     }
-    if has_box(placed, depth) {
-        BOX_HEIGHT / 2.0
-    } else {
-        RADIUS
-    }
+    if has_box(placed, depth) { BOX_HEIGHT / 2.0 } else { RADIUS }
 }
 
 fn is_input(node: &SyntaxTree) -> bool {
@@ -117,11 +93,8 @@ fn place(node: &SyntaxTree) -> Placed<'_> {
     // The outline of the children placed so far, level by level.
     let mut outline: Vec<(f64, f64)> = Vec::new();
     for child in &mut children {
-        let shift = outline
-            .iter()
-            .zip(&child.reach)
-            .map(|(done, new)| done.1 + GAP - new.0)
-            .fold(f64::NEG_INFINITY, f64::max);
+        let shift =
+            outline.iter().zip(&child.reach).map(|(done, new)| done.1 + GAP - new.0).fold(f64::NEG_INFINITY, f64::max);
         child.x = if shift.is_finite() { shift } else { 0.0 };
         for (level, reach) in child.reach.iter().enumerate() {
             let moved = (reach.0 + child.x, reach.1 + child.x);
@@ -141,12 +114,7 @@ fn place(node: &SyntaxTree) -> Placed<'_> {
     let half = half_width(node);
     let mut reach = vec![(-half, half)];
     reach.extend(outline.into_iter().map(|(l, r)| (l - middle, r - middle)));
-    Placed {
-        node,
-        x: 0.0,
-        children,
-        reach,
-    }
+    Placed { node, x: 0.0, children, reach }
 }
 
 fn edges(svg: &mut Svg, placed: &Placed<'_>, x: f64, y: f64) {
@@ -201,27 +169,16 @@ mod tests {
     use super::*;
 
     fn leaf(label: &str) -> SyntaxTree {
-        SyntaxTree {
-            label: label.into(),
-            detail: None,
-            children: vec![],
-        }
+        SyntaxTree { label: label.into(), detail: None, children: vec![] }
     }
 
     fn motif(label: &str, children: Vec<SyntaxTree>) -> SyntaxTree {
-        SyntaxTree {
-            label: label.into(),
-            detail: Some("θ = 0.5".into()),
-            children,
-        }
+        SyntaxTree { label: label.into(), detail: Some("θ = 0.5".into()), children }
     }
 
     #[test]
     fn every_node_is_drawn_once() {
-        let sample = motif(
-            "XNOR",
-            vec![motif("NAND", vec![leaf("x1"), leaf("x1")]), leaf("x2")],
-        );
+        let sample = motif("XNOR", vec![motif("NAND", vec![leaf("x1"), leaf("x1")]), leaf("x2")]);
         let svg = tree(&sample).unwrap();
         assert_eq!(svg, tree(&sample).unwrap());
         let document = read(&svg);
@@ -236,11 +193,7 @@ mod tests {
             if depth == 0 {
                 return leaf("x1");
             }
-            let lone = if depth.is_multiple_of(2) {
-                vec![full(depth - 1)]
-            } else {
-                vec![full(depth - 1), leaf("x2")]
-            };
+            let lone = if depth.is_multiple_of(2) { vec![full(depth - 1)] } else { vec![full(depth - 1), leaf("x2")] };
             motif("XNOR", vec![full(depth - 1), motif("POS", lone)])
         }
         fn spans(placed: &Placed<'_>, x: f64, level: usize, out: &mut Vec<(usize, f64, f64)>) {
@@ -256,10 +209,7 @@ mod tests {
         all.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         assert!(all.len() > 60);
         for pair in all.windows(2) {
-            assert!(
-                pair[0].0 != pair[1].0 || pair[0].2 + GAP * 0.999 <= pair[1].1,
-                "{pair:?}"
-            );
+            assert!(pair[0].0 != pair[1].0 || pair[0].2 + GAP * 0.999 <= pair[1].1, "{pair:?}");
         }
     }
 
@@ -269,15 +219,9 @@ mod tests {
         for _ in 0..40 {
             deep = motif("POS", vec![deep]);
         }
-        assert!(matches!(
-            tree(&deep),
-            Err(FigureError::TooMany { what: "levels", .. })
-        ));
+        assert!(matches!(tree(&deep), Err(FigureError::TooMany { what: "levels", .. })));
         assert!(matches!(tree(&leaf("")), Err(FigureError::Empty { .. })));
         let wide = motif("OR", vec![leaf("x1"); 600]);
-        assert!(matches!(
-            tree(&wide),
-            Err(FigureError::TooMany { what: "nodes", .. })
-        ));
+        assert!(matches!(tree(&wide), Err(FigureError::TooMany { what: "nodes", .. })));
     }
 }

@@ -3,6 +3,7 @@
 pub mod evolve;
 pub mod objective;
 pub mod published;
+pub mod report;
 pub mod search;
 pub mod tree;
 pub mod variation;

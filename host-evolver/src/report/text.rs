@@ -1,0 +1,146 @@
+//! Text: how wide it is, and which parts of it are symbols and subscripts.
+
+/// Widths of the printable ASCII characters in Helvetica, in thousandths of the font size (Adobe's metrics
+/// file, which Arial and Liberation Sans follow).
+#[rustfmt::skip]
+const WIDTHS: [u16; 95] = [
+    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
+    556, 556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
+    1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
+    667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556,
+    333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556,
+    556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+];
+
+/// Size of a subscript relative to the text it belongs to.
+pub(super) const SUB: f64 = 0.74;
+
+/// How a run of text is set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Plain,
+    /// A variable: italic.
+    Symbol,
+    /// An index: small and lowered.
+    Sub,
+}
+
+/// A stretch of text set in one way.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Run {
+    pub text: String,
+    pub kind: Kind,
+}
+
+/// Splits text into runs: one letter followed by digits (`x1`, `G12`, `f₂`) is a symbol with an index,
+/// Greek letters are symbols, all else is plain.
+pub(super) fn runs(text: &str) -> Vec<Run> {
+    let chars: Vec<char> = text.chars().collect();
+    let mut runs: Vec<Run> = Vec::new();
+    let mut push = |text: &[char], kind: Kind, fresh: bool| match runs.last_mut() {
+        Some(last) if last.kind == kind && !fresh => last.text.extend(text),
+        _ => runs.push(Run { text: text.iter().collect(), kind }),
+    };
+    let mut at = 0;
+    while at < chars.len() {
+        let c = chars[at];
+        let starts_word = at == 0 || !chars[at - 1].is_alphanumeric();
+        let digits = chars[at + 1..].iter().take_while(|d| d.is_ascii_digit() || is_low_digit(**d)).count();
+        let next_is_letter = chars.get(at + 1 + digits).is_some_and(|d| d.is_alphabetic());
+        if c.is_alphabetic() && starts_word && digits > 0 && !next_is_letter {
+            push(&[c], Kind::Symbol, true);
+            let index: Vec<char> = chars[at + 1..=at + digits].iter().map(|d| plain_digit(*d)).collect();
+            push(&index, Kind::Sub, true);
+            at += 1 + digits;
+        } else {
+            let greek = ('α'..='ω').contains(&c);
+            push(&[c], if greek { Kind::Symbol } else { Kind::Plain }, false);
+            at += 1;
+        }
+    }
+    runs
+}
+
+fn is_low_digit(c: char) -> bool {
+    ('₀'..='₉').contains(&c)
+}
+
+fn plain_digit(c: char) -> char {
+    match (c as u32).checked_sub('₀' as u32) {
+        Some(value @ 0..=9) => char::from(b'0' + value as u8),
+        _ => c,
+    }
+}
+
+fn char_width(c: char) -> f64 {
+    let thousandths = match (c as usize).checked_sub(32) {
+        Some(index) if index < WIDTHS.len() => WIDTHS[index],
+        _ => match c {
+            '·' => 278,
+            '°' => 400,
+            '×' | '≥' | '≤' | '–' => 570,
+            _ => 600,
+        },
+    };
+    f64::from(thousandths) / 1000.0
+}
+
+/// Width of a run at a font size, in the size's unit.
+pub(super) fn run_width(run: &Run, size: f64) -> f64 {
+    let size = if run.kind == Kind::Sub { size * SUB } else { size };
+    run.text.chars().map(char_width).sum::<f64>() * size
+}
+
+/// Width of text at a font size, as [`runs`] sets it; bold is some 6 % wider.
+pub(super) fn width(text: &str, size: f64, bold: bool) -> f64 {
+    let natural: f64 = runs(text).iter().map(|run| run_width(run, size)).sum();
+    if bold { natural * 1.06 } else { natural }
+}
+
+/// Breaks an expression after commas into lines no wider than `limit` where commas allow it.
+pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for part in text.split_inclusive([',', ' ']) {
+        let Some(line) = lines.last_mut() else {
+            continue;
+        };
+        if !line.is_empty() && width(&format!("{line}{}", part.trim_end()), size, false) > limit {
+            lines.push(part.to_owned());
+        } else {
+            line.push_str(part);
+        }
+    }
+    lines.iter().map(|line| line.trim().to_owned()).filter(|line| !line.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(text: &str) -> Vec<(String, Kind)> {
+        runs(text).into_iter().map(|run| (run.text, run.kind)).collect()
+    }
+
+    #[test]
+    fn indices_are_subscripts_and_words_are_not() {
+        let x2 = [("x".to_owned(), Kind::Symbol), ("2".to_owned(), Kind::Sub)];
+        assert_eq!(kinds("x2"), x2);
+        assert_eq!(kinds("x₂"), x2);
+        assert_eq!(kinds("NAND"), [("NAND".to_owned(), Kind::Plain)]);
+        assert_eq!(kinds("e-puck2"), [("e-puck2".to_owned(), Kind::Plain)]);
+        assert_eq!(kinds("t = 3 s").len(), 1);
+    }
+
+    #[test]
+    fn wrapping_loses_no_character() {
+        let text = "XNOR(NAND(x1,x1),ANDN(x2,XOR(x1,x2)))";
+        let lines = wrap(text, 8.0, 60.0);
+        assert!(lines.len() > 1);
+        assert_eq!(lines.concat(), text);
+    }
+
+    #[test]
+    fn helvetica_widths() {
+        assert!((width("Mi", 10.0, false) - 10.55).abs() < 1e-9);
+    }
+}

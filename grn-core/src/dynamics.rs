@@ -8,15 +8,16 @@ use heapless::Vec;
 impl<S: Scalar, const N: usize> Network<S, N> {
     /// The level of M when inputs are held constant: one pass in topological order with y = R.
     pub fn steady_state(&self, x1: S, x2: S) -> S {
-        self.settle([x1, x2])
+        self.settled([x1, x2])
     }
 
     /// M in the steady state and its gradient (∂M/∂x1, ∂M/∂x2).
     pub fn steady_state_gradient(&self, x1: S, x2: S) -> Dual<S> {
-        self.settle([Dual::input(x1, 0), Dual::input(x2, 1)])
+        self.settled([Dual::input(x1, 0), Dual::input(x2, 1)])
     }
 
-    fn settle<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
+    /// M in the steady state for inputs (x1, x2) of any arithmetic over `S`: what the two methods above are made of.
+    pub fn settled<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
         let mut levels: Vec<A, N> = Vec::new();
         self.regulate(x, &mut levels, |levels, _, regulation| {
             // Genes are visited in order and there are at most N, so the next level always fits.

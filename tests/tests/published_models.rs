@@ -60,8 +60,7 @@ fn pattern_agrees(world: &World, model: &Model, expected: &Value, name: &str) {
     let mut tracer = Tracer::new(world);
     let (mut lost, mut rings) = (Vec::new(), Vec::new());
     let (mut radius_min, mut radius_max, mut clearance_min) = (f64::INFINITY, 0.0_f64, f64::INFINITY);
-    for (index, snapshot) in world.snapshots().iter().enumerate() {
-        let contours = tracer.trace(model, snapshot);
+    for (index, (snapshot, contours)) in tracer.trace_all(model).enumerate() {
         rings.push(contours.rings.len() as u64);
         if contours.enclosed.contains(&false) {
             lost.push(index as u64);

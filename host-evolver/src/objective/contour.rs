@@ -1,25 +1,24 @@
 //! On one lattice: flood the inside component of a target, then follow its edge.
 
-use super::lattice::{Medium, NodeIndex};
+use super::chart::Chart;
+use super::lanes::{Lanes, WIDTH};
+use super::lattice::{Direction, Edge, Medium, NodeIndex};
 use super::model::Model;
+use super::ring::thinned;
 use super::world::Snapshot;
 use grn_core::geometry::Point;
 
-const DIRECTIONS: [u8; 4] = [0, 1, 2, 3];
-
-/// The next direction clockwise.
-const fn right_of(direction: u8) -> u8 {
-    (direction + 3) & 3
-}
+/// A ring's points are at least this far apart, in lattice steps.
+const CLOSEST_POINTS: f64 = 0.25;
 
 /// What is known of a lattice node in the current moment.
 #[derive(Clone, Copy, Default)]
 struct Cell {
     error: f64,
     epoch: u32,
-    /// The component it belongs to, from 1; 0 for none yet.
+    /// The last explored component that holds it, from 1; 0 for none.
     component: u16,
-    /// Directions in which the contour has been followed across the edge to that neighbour.
+    /// Directions in which the contour has been followed across the edge to that neighbour, as bits.
     followed: u8,
 }
 
@@ -32,22 +31,35 @@ pub(super) enum Component {
     Leaks,
 }
 
+/// A model at a moment, as the follower looks at it.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub(super) model: &'a Model,
+    pub(super) snapshot: &'a Snapshot,
+    /// Where to look nodes up, if the chart is accurate enough for this model.
+    pub(super) chart: Option<&'a Chart>,
+}
+
+/// A crossing of the contour: from an inside node to an outside neighbour.
+type Crossing = (NodeIndex, Direction);
+
 /// Floods and follows components on one lattice; keeps its working memory from one to the next.
 ///
-/// The functions between two calls of [`Follower::begin`] must be given the same model and snapshot.
+/// Between two calls of [`Follower::begin`] every call must be given the same view.
 pub(super) struct Follower<M> {
     medium: M,
     cells: Vec<Cell>,
     epoch: u32,
     flood: Vec<NodeIndex>,
-    crossings: Vec<(NodeIndex, u8)>,
+    crossings: Vec<Crossing>,
+    edges: Vec<Edge>,
     components: u16,
 }
 
 impl<M: Medium> Follower<M> {
     pub(super) fn new(medium: M) -> Self {
         let cells = vec![Cell::default(); medium.lattice().nodes().len()];
-        Follower { medium, cells, epoch: 0, flood: Vec::new(), crossings: Vec::new(), components: 0 }
+        Follower { medium, cells, epoch: 0, flood: Vec::new(), crossings: Vec::new(), edges: Vec::new(), components: 0 }
     }
 
     /// Forgets the last model and moment.
@@ -57,15 +69,9 @@ impl<M: Medium> Follower<M> {
     }
 
     /// The node next to `target` from which its component can be flooded: nearest first, error at least `threshold`.
-    pub(super) fn start(
-        &mut self,
-        target: Point<f64>,
-        threshold: f64,
-        model: &Model,
-        snapshot: &Snapshot,
-    ) -> Option<NodeIndex> {
+    pub(super) fn start(&mut self, target: Point<f64>, threshold: f64, view: View<'_>) -> Option<NodeIndex> {
         let corners = self.medium.lattice().cell_around(target);
-        corners.into_iter().find(|&node| self.error(node, model, snapshot) >= threshold)
+        corners.into_iter().find(|&node| self.error(node, view) >= threshold)
     }
 
     /// How many components were explored since the beginning.
@@ -78,75 +84,80 @@ impl<M: Medium> Follower<M> {
         self.cells[node].component
     }
 
-    fn error(&mut self, node: NodeIndex, model: &Model, snapshot: &Snapshot) -> f64 {
+    /// The pattern error at a node; nodes on the border count as outside.
+    fn error(&mut self, node: NodeIndex, view: View<'_>) -> f64 {
         if self.cells[node].epoch != self.epoch {
-            let [x1, x2] = self.medium.inputs(snapshot, node);
-            let error = model.error(x1, x2);
-            self.cells[node] = Cell { error, epoch: self.epoch, component: 0, followed: 0 };
+            match view.chart {
+                Some(chart) => self.look_up(node, chart, view),
+                None => self.compute_run(node - node % WIDTH, view),
+            }
         }
         self.cells[node].error
     }
 
-    fn is_inside(&mut self, node: Option<NodeIndex>, model: &Model, snapshot: &Snapshot) -> bool {
-        node.is_some_and(|node| self.error(node, model, snapshot) >= 0.0)
+    fn look_up(&mut self, node: NodeIndex, chart: &Chart, view: View<'_>) {
+        let [x1, x2] = self.medium.inputs_at(view.snapshot, node);
+        self.know(node, chart.at(x1, x2));
+    }
+
+    fn compute_run(&mut self, first: NodeIndex, view: View<'_>) {
+        let [x1, x2] = self.medium.inputs(view.snapshot, first);
+        let errors = view.model.errors(x1, x2);
+        for (lane, error) in errors.0.into_iter().enumerate() {
+            self.know(first + lane, error);
+        }
+    }
+
+    fn know(&mut self, node: NodeIndex, error: f64) {
+        let error = if self.medium.is_on_border(node) { f64::NEG_INFINITY } else { error };
+        self.cells[node] = Cell { error, epoch: self.epoch, component: 0, followed: 0 };
+    }
+
+    fn is_inside(&mut self, node: NodeIndex, view: View<'_>) -> bool {
+        self.error(node, view) >= 0.0
     }
 
     /// Whether the component of `start` at the given threshold is closed; stops at the first leak.
-    pub(super) fn probe(&mut self, start: NodeIndex, threshold: f64, model: &Model, snapshot: &Snapshot) -> Component {
-        self.components += 1;
-        let label = self.components;
-        let mut found = Component::Closed;
-        self.flood_from(start, label);
+    pub(super) fn probe(&mut self, start: NodeIndex, threshold: f64, view: View<'_>) -> Component {
+        let label = self.flood_from(start);
         while let Some(node) = self.flood.pop() {
-            let neighbours = DIRECTIONS.map(|direction| self.medium.lattice().neighbour(node, direction));
-            if self.medium.clearance(node) <= 0.0 || neighbours.contains(&None) {
-                found = Component::Leaks;
-                break;
+            if self.medium.is_leak(node) {
+                return Component::Leaks;
             }
-            for neighbour in neighbours.into_iter().flatten() {
-                if self.error(neighbour, model, snapshot) >= threshold {
-                    self.join(Some(neighbour), label);
+            for direction in Direction::ALL {
+                let neighbour = self.medium.lattice().neighbour(node, direction);
+                if self.error(neighbour, view) >= threshold {
+                    self.join(neighbour, label);
                 }
             }
         }
-        found
+        Component::Closed
     }
 
     /// Labels the component of `start` and collects where its edge crosses the lattice. May stop at the first leak.
-    pub(super) fn label(
-        &mut self,
-        start: NodeIndex,
-        stop_at_leak: bool,
-        model: &Model,
-        snapshot: &Snapshot,
-    ) -> Component {
-        self.components += 1;
-        let label = self.components;
+    pub(super) fn label(&mut self, start: NodeIndex, stop_at_leak: bool, view: View<'_>) -> Component {
+        let label = self.flood_from(start);
         let mut found = Component::Closed;
         self.crossings.clear();
-        self.flood_from(start, label);
         while let Some(node) = self.flood.pop() {
-            let neighbours = DIRECTIONS.map(|direction| self.medium.lattice().neighbour(node, direction));
-            if self.medium.clearance(node) <= 0.0 || neighbours.contains(&None) {
+            if self.medium.is_leak(node) {
                 found = Component::Leaks;
                 if stop_at_leak {
-                    break;
+                    return found;
                 }
             }
-            let inside = neighbours.map(|neighbour| self.is_inside(neighbour, model, snapshot));
-            for direction in DIRECTIONS {
-                let side = usize::from(direction);
-                if inside[side] {
-                    self.join(neighbours[side], label);
+            let neighbours = Direction::ALL.map(|direction| self.medium.lattice().neighbour(node, direction));
+            let inside = neighbours.map(|neighbour| self.is_inside(neighbour, view));
+            for direction in Direction::ALL {
+                let (neighbour, right) = (neighbours[direction.index()], direction.right());
+                if inside[direction.index()] {
+                    self.join(neighbour, label);
                     continue;
                 }
                 self.crossings.push((node, direction));
-                let right = right_of(direction);
-                if !inside[usize::from(right)] {
-                    let diagonal = neighbours[side].and_then(|next| self.medium.lattice().neighbour(next, right));
-                    if self.is_inside(diagonal, model, snapshot)
-                        && self.is_joined_across(node, direction, model, snapshot)
-                    {
+                if !inside[right.index()] {
+                    let diagonal = self.diagonal(node, direction);
+                    if self.is_inside(diagonal, view) && self.is_joined_across(node, direction, view) {
                         self.join(diagonal, label);
                     }
                 }
@@ -155,98 +166,115 @@ impl<M: Medium> Follower<M> {
         found
     }
 
-    fn flood_from(&mut self, start: NodeIndex, label: u16) {
+    fn flood_from(&mut self, start: NodeIndex) -> u16 {
+        self.components += 1;
         self.flood.clear();
         self.flood.push(start);
-        self.cells[start].component = label;
+        self.cells[start].component = self.components;
+        self.components
     }
 
-    fn join(&mut self, node: Option<NodeIndex>, label: u16) {
-        if let Some(node) = node
-            && self.cells[node].component != label
-        {
-            self.cells[node].component = label;
+    fn join(&mut self, node: NodeIndex, label: u16) {
+        let cell = &mut self.cells[node];
+        if cell.component != label {
+            cell.component = label;
             self.flood.push(node);
         }
     }
 
-    /// Whether the middle of the cell to the right of `node` → `direction` is inside: joins its two inside corners.
-    fn is_joined_across(&self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> bool {
-        let right = right_of(direction);
+    /// The node across the cell that lies ahead and to the right of a node that is not on the border.
+    fn diagonal(&self, node: NodeIndex, direction: Direction) -> NodeIndex {
+        // Both steps are taken from `node`: one of the nodes between may be on the border.
         let lattice = self.medium.lattice();
-        let ahead = lattice.neighbour(node, direction);
-        let aside = lattice.neighbour(node, right);
-        let across = ahead.and_then(|ahead| lattice.neighbour(ahead, right));
-        let corners = [Some(node), ahead, aside, across];
-        let inputs = corners.iter().flatten().map(|&corner| self.medium.inputs(snapshot, corner));
-        let [x1, x2] = inputs.fold([0.0; 2], |sum, inputs| [sum[0] + inputs[0] / 4.0, sum[1] + inputs[1] / 4.0]);
-        model.error(x1, x2) >= 0.0
+        lattice.neighbour(node, direction) + lattice.neighbour(node, direction.right()) - node
     }
 
-    /// Follows every edge of the component labelled last.
-    pub(super) fn follow(&mut self, model: &Model, snapshot: &Snapshot, loops: &mut Vec<Vec<Point<f64>>>) {
+    /// Whether the middle of the cell ahead and to the right is inside: then its two inside corners are joined.
+    fn is_joined_across(&mut self, node: NodeIndex, direction: Direction, view: View<'_>) -> bool {
+        let lattice = self.medium.lattice();
+        let ahead = lattice.neighbour(node, direction);
+        let aside = lattice.neighbour(node, direction.right());
+        let mut corners = [node, ahead, aside, self.diagonal(node, direction)];
+        // In one order, whichever corner asks: all must get the same answer to the last bit.
+        corners.sort_unstable();
+        let mut middle = [0.0; 2];
+        for corner in corners {
+            for (sum, input) in middle.iter_mut().zip(self.medium.inputs_at(view.snapshot, corner)) {
+                *sum += input / 4.0;
+            }
+        }
+        view.model.error(middle[0], middle[1]) >= 0.0
+    }
+
+    /// Follows every edge of the component labelled last, each a closed contour with the inside to its left.
+    pub(super) fn follow(&mut self, view: View<'_>, loops: &mut Vec<Vec<Point<f64>>>) {
         let crossings = std::mem::take(&mut self.crossings);
         for &(node, direction) in &crossings {
-            if self.cells[node].followed & (1 << direction) == 0 {
-                loops.push(self.follow_one((node, direction), model, snapshot));
+            if self.cells[node].followed & (1 << direction.index()) == 0 {
+                self.walk((node, direction), view);
+                loops.push(self.refined(view));
             }
         }
         self.crossings = crossings;
     }
 
-    /// Walks along one closed contour with the inside to the left, from crossing to crossing.
-    fn follow_one(&mut self, start: (NodeIndex, u8), model: &Model, snapshot: &Snapshot) -> Vec<Point<f64>> {
-        let mut points = Vec::new();
+    /// Collects the edges that one closed contour crosses, in order.
+    fn walk(&mut self, start: Crossing, view: View<'_>) {
+        self.edges.clear();
         let (mut node, mut direction) = start;
         loop {
-            self.cells[node].followed |= 1 << direction;
-            points.push(self.crossing_point(node, direction, model, snapshot));
-            (node, direction) = self.next_crossing(node, direction, model, snapshot);
+            self.cells[node].followed |= 1 << direction.index();
+            self.edges.push(Edge { from: node, to: self.medium.lattice().neighbour(node, direction) });
+            (node, direction) = self.next_crossing(node, direction, view);
             if (node, direction) == start {
-                return points;
+                return;
             }
         }
     }
 
     /// Marching squares in the cell to the right of the edge `node` → `direction`, whose far end is outside.
-    fn next_crossing(&mut self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> (NodeIndex, u8) {
-        let lattice = self.medium.lattice();
-        let right = right_of(direction);
-        let aside = lattice.neighbour(node, right);
-        let across = aside.and_then(|aside| lattice.neighbour(aside, direction));
-        let aside_inside = self.is_inside(aside, model, snapshot);
-        let across_inside = self.is_inside(across, model, snapshot);
-        match (aside, across) {
-            (_, Some(across))
-                if across_inside && (aside_inside || self.is_joined_across(node, direction, model, snapshot)) =>
-            {
-                (across, (right + 2) & 3)
-            }
-            (Some(aside), _) if aside_inside => (aside, direction),
-            _ => (node, right),
+    fn next_crossing(&mut self, node: NodeIndex, direction: Direction, view: View<'_>) -> Crossing {
+        let right = direction.right();
+        let aside = self.medium.lattice().neighbour(node, right);
+        let across = self.diagonal(node, direction);
+        let aside_inside = self.is_inside(aside, view);
+        let across_inside = self.is_inside(across, view);
+        if across_inside && (aside_inside || self.is_joined_across(node, direction, view)) {
+            (across, direction.left())
+        } else if aside_inside {
+            (aside, direction)
+        } else {
+            (node, right)
         }
     }
 
-    /// Where the pattern crosses the edge: from the chord, one exact evaluation, then the parabola through three points.
-    fn crossing_point(&self, node: NodeIndex, direction: u8, model: &Model, snapshot: &Snapshot) -> Point<f64> {
-        let Some(outer) = self.medium.lattice().neighbour(node, direction) else {
-            return self.medium.lattice().point(node);
-        };
-        let (inner_error, outer_error) = (self.cells[node].error, self.cells[outer].error);
-        let chord = inner_error / (inner_error - outer_error);
-        let [x1, x2] = self.medium.inputs_between(snapshot, node, outer, chord);
-        let t = parabola_root([0.0, chord, 1.0], [inner_error, model.error(x1, x2), outer_error]);
-        self.medium.between(node, outer, t)
+    /// Where the contour crosses the collected edges: from the chord, one evaluation, then the parabola through three
+    /// points.
+    fn refined(&self, view: View<'_>) -> Vec<Point<f64>> {
+        let mut points = Vec::with_capacity(self.edges.len());
+        for edges in self.edges.chunks(WIDTH) {
+            let filled = std::array::from_fn(|lane| edges[lane.min(edges.len() - 1)]);
+            let inner = filled.map(|edge| self.cells[edge.from].error);
+            // A border node's error is minus infinity: the chord then is 0, the inner node itself.
+            let outer = filled.map(|edge| self.cells[edge.to].error);
+            let chord = Lanes(std::array::from_fn(|lane| inner[lane] / (inner[lane] - outer[lane])));
+            let [x1, x2] = self.medium.inputs_along(view.snapshot, &filled, chord);
+            let middle = view.model.errors(x1, x2);
+            points.extend(edges.iter().enumerate().map(|(lane, &edge)| {
+                let t = parabola_root([0.0, chord.0[lane], 1.0], [inner[lane], middle.0[lane], outer[lane]]);
+                self.medium.along(edge, t)
+            }));
+        }
+        thinned(points, self.medium.lattice().step() * CLOSEST_POINTS)
     }
 }
 
-/// The root in [0, 1] of the parabola through three points, the first value ≥ 0 and the last < 0; inverse quadratic
-/// interpolation where the values fall strictly, else the chord's guess.
-fn parabola_root(t: [f64; 3], v: [f64; 3]) -> f64 {
-    if !(v[0] > v[1] && v[1] > v[2]) {
+/// The root in [0, 1] by inverse quadratic interpolation of three points whose values fall strictly through 0, else the
+/// middle point.
+fn parabola_root(t: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
+    if !(a > b && b > c && c.is_finite()) {
         return t[1];
     }
-    let [a, b, c] = v;
     let root =
         t[0] * b * c / ((a - b) * (a - c)) + t[1] * a * c / ((b - a) * (b - c)) + t[2] * a * b / ((c - a) * (c - b));
     if (0.0..=1.0).contains(&root) { root } else { t[1] }

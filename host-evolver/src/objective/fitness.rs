@@ -2,10 +2,11 @@
 
 use super::model::Model;
 use super::profile::Profile;
+use super::ring::candidates;
 use super::tracer::{Contours, Tracer};
 use super::world::{Snapshot, World};
 use crate::tree::Tree;
-use grn_core::geometry::{Point, Vector};
+use grn_core::geometry::Point;
 
 /// Candidate points per ring that f2 averages over.
 pub const CANDIDATES_PER_RING: usize = 48;
@@ -86,38 +87,36 @@ impl<'w> Judge<'w> {
 
     /// Evaluates a model over all snapshots.
     pub fn judge(&mut self, model: &Model) -> Evaluation {
-        let world = self.world;
         let (mut f2, mut violation) = (0.0, 0.0);
-        for snapshot in world.snapshots() {
-            let contours = self.tracer.trace(model, snapshot);
-            let moment = self.judge_moment(snapshot, &contours);
+        for (snapshot, contours) in self.tracer.trace_all(model) {
+            let moment = judge_moment(self.world, &self.terms, snapshot, &contours);
             f2 += moment.f2;
             violation += moment.violation;
         }
-        let count = world.snapshots().len() as f64;
+        let count = self.world.snapshots().len() as f64;
         Evaluation { f2: f2 / count, violation: violation / count }
     }
+}
 
-    fn judge_moment(&self, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
-        let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
-        let lost = lost / snapshot.targets.len() as f64;
-        let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
-        for ring in &contours.rings {
-            for point in equally_spaced(ring, CANDIDATES_PER_RING) {
-                to_targets += sum_over(&snapshot.targets, point, &self.terms.target);
-                to_obstacles += sum_over(&snapshot.obstacle_points, point, &self.terms.obstacle);
-                close += usize::from(self.world.is_closer_than(point, SMALLEST_CLEARANCE));
-                count += 1;
-            }
+fn judge_moment(world: &World, terms: &Terms, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+    let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
+    let lost = lost / snapshot.targets.len() as f64;
+    let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
+    for ring in &contours.rings {
+        for point in candidates(ring, CANDIDATES_PER_RING) {
+            to_targets += sum_over(&snapshot.targets, point, &terms.target);
+            to_obstacles += sum_over(&snapshot.obstacle_points, point, &terms.obstacle);
+            close += usize::from(world.is_closer_than(point, SMALLEST_CLEARANCE));
+            count += 1;
         }
-        if count == 0 {
-            return Evaluation { f2: WORST_F2, violation: lost };
-        }
-        let count = count as f64;
-        let per_target = count * snapshot.targets.len() as f64;
-        let per_obstacle = count * snapshot.obstacle_points.len().max(1) as f64;
-        Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
     }
+    if count == 0 {
+        return Evaluation { f2: WORST_F2, violation: lost };
+    }
+    let count = count as f64;
+    let per_target = count * snapshot.targets.len() as f64;
+    let per_obstacle = count * snapshot.obstacle_points.len().max(1) as f64;
+    Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
 }
 
 fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile<DistanceTerm>) -> f64 {
@@ -128,30 +127,4 @@ fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile<DistanceTe
             term.at(offset.dot(offset))
         })
         .sum()
-}
-
-/// `count` points on a closed polygon, at equal arc length, from its first vertex on.
-pub fn equally_spaced(polygon: &[Point<f64>], count: usize) -> impl Iterator<Item = Point<f64>> {
-    let edges = move |start: usize| {
-        let end = if start + 1 == polygon.len() { 0 } else { start + 1 };
-        (polygon[start], polygon[end] - polygon[start])
-    };
-    let perimeter: f64 = (0..polygon.len()).map(|start| edges(start).1.length()).sum();
-    let spacing = perimeter / count as f64;
-    let mut edge = 0;
-    let mut passed = 0.0;
-    (0..count).filter_map(move |candidate| {
-        let place = candidate as f64 * spacing;
-        while edge < polygon.len() {
-            let (start, along) = edges(edge);
-            let length = along.length();
-            if place <= passed + length || edge + 1 == polygon.len() {
-                let fraction = if length > 0.0 { ((place - passed) / length).min(1.0) } else { 0.0 };
-                return Some(start + Vector::new(along.x * fraction, along.y * fraction));
-            }
-            passed += length;
-            edge += 1;
-        }
-        None
-    })
 }

@@ -1,5 +1,6 @@
 //! Lattices over a world, and the inputs of a model at their nodes.
 
+use super::lanes::{Lanes, WIDTH};
 use super::world::{Snapshot, World};
 use grn_core::geometry::{Point, Vector};
 use std::ops::Range;
@@ -10,11 +11,36 @@ const MARGIN: f64 = 5.0;
 /// A lattice node's place in row-major order.
 pub(super) type NodeIndex = usize;
 
+/// East, north, west, south.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Direction(u8);
+
+impl Direction {
+    pub(super) const ALL: [Direction; 4] = [Direction(0), Direction(1), Direction(2), Direction(3)];
+
+    pub(super) const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// A quarter turn clockwise.
+    pub(super) const fn right(self) -> Direction {
+        Direction((self.0 + 3) & 3)
+    }
+
+    /// A quarter turn anticlockwise.
+    pub(super) const fn left(self) -> Direction {
+        Direction((self.0 + 1) & 3)
+    }
+}
+
 /// A square lattice over a scenario's region and a margin around it.
+///
+/// Rows are a whole number of lanes long, so that aligned runs of nodes can be computed together. Nodes on the border
+/// count as outside every pattern; only from the others are neighbours asked for.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     origin: Point<f64>,
-    pub(super) step: f64,
+    step: f64,
     columns: usize,
     rows: usize,
 }
@@ -22,11 +48,16 @@ pub(super) struct Lattice {
 impl Lattice {
     pub(super) fn over(region: [f64; 2], step: f64) -> Lattice {
         let count = |length: f64| ((length + 2.0 * MARGIN) / step).ceil() as usize + 1;
-        Lattice { origin: Vector::new(-MARGIN, -MARGIN), step, columns: count(region[0]), rows: count(region[1]) }
+        let columns = count(region[0]).next_multiple_of(WIDTH);
+        Lattice { origin: Vector::new(-MARGIN, -MARGIN), step, columns, rows: count(region[1]) }
     }
 
     pub(super) fn nodes(&self) -> Range<NodeIndex> {
         0..self.columns * self.rows
+    }
+
+    pub(super) fn step(&self) -> f64 {
+        self.step
     }
 
     pub(super) fn point(&self, node: NodeIndex) -> Point<f64> {
@@ -34,15 +65,19 @@ impl Lattice {
         self.origin + offset * self.step
     }
 
-    /// The next node to the east (0), north (1), west (2) or south (3); `None` beyond the lattice.
-    pub(super) fn neighbour(&self, node: NodeIndex, direction: u8) -> Option<NodeIndex> {
-        let column = node % self.columns;
-        match direction {
-            0 => (column + 1 < self.columns).then(|| node + 1),
-            1 => Some(node + self.columns).filter(|&north| north < self.columns * self.rows),
-            2 => (column > 0).then(|| node - 1),
-            _ => node.checked_sub(self.columns),
+    /// The next node in a direction from a node that is not on the border.
+    pub(super) fn neighbour(&self, node: NodeIndex, direction: Direction) -> NodeIndex {
+        match direction.0 {
+            0 => node + 1,
+            1 => node + self.columns,
+            2 => node - 1,
+            _ => node - self.columns,
         }
+    }
+
+    pub(super) fn is_on_border(&self, node: NodeIndex) -> bool {
+        let (column, row) = (node % self.columns, node / self.columns);
+        column == 0 || row == 0 || column + 1 == self.columns || row + 1 == self.rows
     }
 
     /// The corners of the cell that holds `point`, nearest first; empty outside the lattice.
@@ -71,27 +106,46 @@ impl Lattice {
     }
 }
 
+/// An edge of the lattice, from one node to its neighbour.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) from: NodeIndex,
+    pub(super) to: NodeIndex,
+}
+
 /// A lattice with what models need to know at its nodes.
 pub(super) trait Medium {
     fn world(&self) -> &World;
     fn lattice(&self) -> &Lattice;
-    /// (x1, x2) at a node.
-    fn inputs(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
+    /// (x1, x2) at eight nodes from `first` on, a multiple of eight.
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2];
+    /// (x1, x2) at one node.
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
     /// Signed distance to the nearest wall, metres, negative inside.
     fn clearance(&self, node: NodeIndex) -> f64;
+    /// Whether a pattern that holds this node leaks: it is in a wall, or at the border.
+    fn is_leak(&self, node: NodeIndex) -> bool;
 
-    /// The point at the fraction `t` of the way between two nodes.
-    fn between(&self, from: NodeIndex, to: NodeIndex, t: f64) -> Point<f64> {
-        let start = self.lattice().point(from);
-        start + (self.lattice().point(to) - start) * t
+    /// Whether the node is on the lattice's border.
+    fn is_on_border(&self, node: NodeIndex) -> bool {
+        self.lattice().is_on_border(node)
     }
 
-    /// (x1, x2) at the fraction `t` of the way between two neighbouring nodes. x1 is exact; x2 takes the distance to the
-    /// walls as linear between the nodes, which it is beside a straight wall.
-    fn inputs_between(&self, snapshot: &Snapshot, from: NodeIndex, to: NodeIndex, t: f64) -> [f64; 2] {
-        let clearance = self.clearance(from) + (self.clearance(to) - self.clearance(from)) * t;
-        let point = self.between(from, to, t);
-        [self.world().x1_at(snapshot, point), self.world().x2_at(clearance)]
+    /// The point at the fraction `t` of the way along an edge.
+    fn along(&self, edge: Edge, t: f64) -> Point<f64> {
+        let start = self.lattice().point(edge.from);
+        start + (self.lattice().point(edge.to) - start) * t
+    }
+
+    /// (x1, x2) at fractions of the way along eight edges. x1 is exact; x2 takes the distance to the walls as linear
+    /// along an edge, which it is beside a straight wall.
+    fn inputs_along(&self, snapshot: &Snapshot, edges: &[Edge; WIDTH], t: Lanes) -> [Lanes; 2] {
+        let points = std::array::from_fn(|lane| self.along(edges[lane], t.0[lane]));
+        let clearance = std::array::from_fn(|lane| {
+            let (from, to) = (self.clearance(edges[lane].from), self.clearance(edges[lane].to));
+            from + (to - from) * t.0[lane]
+        });
+        [self.world().x1_at_all(snapshot, &points), self.world().x2_at_all(Lanes(clearance))]
     }
 }
 
@@ -106,11 +160,21 @@ impl Medium for Kept<'_> {
     fn lattice(&self) -> &Lattice {
         &self.0.lattice
     }
-    fn inputs(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
+        let run = |values: &[f64]| Lanes(std::array::from_fn(|lane| values[first + lane]));
+        [run(&snapshot.x1), run(&self.0.x2)]
+    }
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         [snapshot.x1[node], self.0.x2[node]]
+    }
+    fn is_on_border(&self, node: NodeIndex) -> bool {
+        self.0.leaks[node] && self.0.lattice.is_on_border(node)
     }
     fn clearance(&self, node: NodeIndex) -> f64 {
         self.0.clearance[node]
+    }
+    fn is_leak(&self, node: NodeIndex) -> bool {
+        self.0.leaks[node]
     }
 }
 
@@ -133,10 +197,24 @@ impl Medium for Computed<'_> {
     fn lattice(&self) -> &Lattice {
         &self.lattice
     }
-    fn inputs(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
+        let points = std::array::from_fn(|lane| self.lattice.point(first + lane));
+        let clearance = points.map(|point| self.world.clearance_at(point));
+        [self.world.x1_at_all(snapshot, &points), self.world.x2_at_all(Lanes(clearance))]
+    }
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         self.world.inputs_at(snapshot, self.lattice.point(node))
     }
     fn clearance(&self, node: NodeIndex) -> f64 {
         self.world.clearance_at(self.lattice.point(node))
     }
+    fn is_leak(&self, node: NodeIndex) -> bool {
+        next_to_border(&self.lattice, node) || self.clearance(node) <= 0.0
+    }
+}
+
+/// Whether some neighbour of a node is on the border.
+pub(super) fn next_to_border(lattice: &Lattice, node: NodeIndex) -> bool {
+    lattice.is_on_border(node)
+        || Direction::ALL.into_iter().any(|direction| lattice.is_on_border(lattice.neighbour(node, direction)))
 }

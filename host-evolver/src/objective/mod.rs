@@ -3,11 +3,14 @@
 //! A scenario is prepared once: the morphogens x1 and x2 depend on the world alone and are kept on a lattice. A model is
 //! then judged by flooding the inside component of each target, following its contour, and scoring candidate points.
 
+mod chart;
 mod contour;
 mod fitness;
+mod lanes;
 mod lattice;
 mod model;
 mod profile;
+mod ring;
 mod tracer;
 mod world;
 

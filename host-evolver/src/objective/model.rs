@@ -1,5 +1,6 @@
 //! A network with its pattern, in the host's reference precision.
 
+use super::lanes::Lanes;
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::{NoPattern, Pattern};
 
@@ -34,5 +35,12 @@ impl Model {
     /// The pattern error φ of the steady state: ≥ 0 inside.
     pub fn error(&self, x1: f64, x2: f64) -> f64 {
         self.pattern.error(self.network.steady_state(x1, x2))
+    }
+
+    /// The same at eight places.
+    pub(super) fn errors(&self, x1: Lanes, x2: Lanes) -> Lanes {
+        let m = self.network.settled([x1, x2]);
+        let (level, per_contrast) = (self.pattern.level(), 1.0 / self.pattern.contrast());
+        (m - Lanes::splat(level)) * Lanes::splat(per_contrast)
     }
 }

@@ -5,7 +5,7 @@ const SPACING_TIMES_STEEPNESS: f64 = 0.1;
 /// Nearer than this (metres) the function is evaluated exactly: there the square root bends it.
 const NEAR: f64 = 0.5;
 /// Beyond this many steepness lengths from the last threshold the function has reached its limit.
-const REACH: f64 = 37.0;
+const REACH: f64 = 20.0;
 
 /// A smooth function of a distance, which tends to a limit.
 #[derive(Clone, Debug)]

@@ -1,16 +1,17 @@
 //! From a model and a moment to the pattern (model page, section 3).
 
-use super::contour::{Component, Follower};
+use super::chart::Chart;
+use super::contour::{Component, Follower, View};
 use super::lattice::{Computed, Kept, Medium, NodeIndex};
 use super::model::Model;
 use super::world::{LATTICE_STEP, Snapshot, World};
 use grn_core::geometry::Point;
 
 /// Spacing of the lattice that decides doubtful topology, metres.
-const FINE_STEP: f64 = LATTICE_STEP * 0.4;
+const FINE_STEP: f64 = LATTICE_STEP / 4.0;
 /// A component's topology is in doubt when it changes within this pattern error: a cell of the lattice can hide a neck
 /// or a gap that shallow.
-const DOUBT: f64 = 0.01;
+const DOUBT: f64 = 0.02;
 
 /// The pattern of one model at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,13 +29,14 @@ pub struct Tracer<'w> {
     world: &'w World,
     coarse: Follower<Kept<'w>>,
     fine: Option<Follower<Computed<'w>>>,
+    chart: Chart,
     outline_leaks: bool,
 }
 
 impl<'w> Tracer<'w> {
     /// A tracer for one world.
     pub fn new(world: &'w World) -> Self {
-        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, outline_leaks: false }
+        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, chart: Chart::default(), outline_leaks: false }
     }
 
     /// A tracer that also fills [`Contours::leaks`], for drawing.
@@ -42,23 +44,28 @@ impl<'w> Tracer<'w> {
         Tracer { outline_leaks: true, ..Self::new(world) }
     }
 
-    /// The pattern of `model` at `snapshot`, which must belong to the tracer's world.
-    pub fn trace(&mut self, model: &Model, snapshot: &Snapshot) -> Contours {
-        let held: Vec<bool> = snapshot
-            .targets
-            .iter()
-            .map(|&target| {
-                let [x1, x2] = self.world.inputs_at(snapshot, target);
-                model.error(x1, x2) >= 0.0
-            })
-            .collect();
-        if is_in_doubt(&mut self.coarse, &held, model, snapshot) {
-            let world = self.world;
+    /// The patterns of `model` at each snapshot of the world, in turn.
+    pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
+        let targets = self.world.scenario().paths().len();
+        self.chart.draw(model, targets);
+        self.world.snapshots().iter().map(move |snapshot| (snapshot, self.trace(model, snapshot)))
+    }
+
+    fn trace(&mut self, model: &Model, snapshot: &Snapshot) -> Contours {
+        let world = self.world;
+        let chart = (self.chart.accuracy() < DOUBT / 4.0).then_some(&self.chart);
+        let view = View { model, snapshot, chart };
+        let is_held = |&target: &Point<f64>| {
+            let [x1, x2] = world.inputs_at(snapshot, target);
+            model.error(x1, x2) >= 0.0
+        };
+        let held: Vec<bool> = snapshot.targets.iter().map(is_held).collect();
+        if is_in_doubt(&mut self.coarse, &held, view) {
             let fine = self.fine.get_or_insert_with(|| Follower::new(Computed::new(world, FINE_STEP)));
             fine.begin();
-            trace_on(fine, &held, self.outline_leaks, model, snapshot)
+            trace_on(fine, &held, self.outline_leaks, View { chart: None, ..view })
         } else {
-            trace_on(&mut self.coarse, &held, self.outline_leaks, model, snapshot)
+            trace_on(&mut self.coarse, &held, self.outline_leaks, view)
         }
     }
 }
@@ -71,30 +78,31 @@ enum Fate {
     Closed(usize),
 }
 
-/// Whether the fate of some target differs between the two ends of the doubtful range.
-fn is_in_doubt<M: Medium>(follower: &mut Follower<M>, held: &[bool], model: &Model, snapshot: &Snapshot) -> bool {
+/// Whether the fate of some target may differ within the doubtful range of thresholds.
+///
+/// Components grow as the threshold falls. One that is closed and holds a single target at the low end therefore is so
+/// throughout; only the others have to be looked at from the high end too.
+fn is_in_doubt<M: Medium>(follower: &mut Follower<M>, held: &[bool], view: View<'_>) -> bool {
     follower.begin();
     let mut fates = |threshold: f64| {
-        fates(follower, held, snapshot, threshold, model, |follower, start| {
-            follower.probe(start, threshold, model, snapshot)
-        })
+        fates(follower, held, threshold, view, |follower, start| follower.probe(start, threshold, view))
     };
-    fates(-DOUBT) != fates(DOUBT)
+    let low = fates(-DOUBT);
+    let alone = |(place, fate): (usize, &Fate)| match fate {
+        Fate::Outside => !held[place],
+        Fate::Leaks => false,
+        Fate::Closed(_) => low.iter().filter(|other| *other == fate).count() == 1,
+    };
+    !low.iter().enumerate().all(alone) && low != fates(DOUBT)
 }
 
-fn trace_on<M: Medium>(
-    follower: &mut Follower<M>,
-    held: &[bool],
-    outline_leaks: bool,
-    model: &Model,
-    snapshot: &Snapshot,
-) -> Contours {
+fn trace_on<M: Medium>(follower: &mut Follower<M>, held: &[bool], outline_leaks: bool, view: View<'_>) -> Contours {
     let (mut rings, mut leaks) = (Vec::new(), Vec::new());
-    let fates = fates(follower, held, snapshot, 0.0, model, |follower, start| {
-        let component = follower.label(start, !outline_leaks, model, snapshot);
+    let fates = fates(follower, held, 0.0, view, |follower, start| {
+        let component = follower.label(start, !outline_leaks, view);
         match component {
-            Component::Closed => follower.follow(model, snapshot, &mut rings),
-            Component::Leaks if outline_leaks => follower.follow(model, snapshot, &mut leaks),
+            Component::Closed => follower.follow(view, &mut rings),
+            Component::Leaks if outline_leaks => follower.follow(view, &mut leaks),
             Component::Leaks => {}
         }
         component
@@ -107,16 +115,15 @@ fn trace_on<M: Medium>(
 fn fates<M: Medium>(
     follower: &mut Follower<M>,
     held: &[bool],
-    snapshot: &Snapshot,
     threshold: f64,
-    model: &Model,
+    view: View<'_>,
     mut explore: impl FnMut(&mut Follower<M>, NodeIndex) -> Component,
 ) -> Vec<Fate> {
     let mut explored = Vec::new();
     let before = follower.components();
-    let targets = snapshot.targets.iter().zip(held);
+    let targets = view.snapshot.targets.iter().zip(held);
     let fates = targets.map(|(&target, &held)| {
-        let start = if held { follower.start(target, threshold, model, snapshot) } else { None };
+        let start = if held { follower.start(target, threshold, view) } else { None };
         let Some(start) = start else { return Fate::Outside };
         let known = follower.component_of(start).checked_sub(before + 1).map(usize::from);
         let place = known.unwrap_or_else(|| {

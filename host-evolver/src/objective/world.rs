@@ -1,12 +1,13 @@
 //! A scenario prepared for judging many models: morphogens on a lattice, which no model changes.
 
-use super::lattice::Lattice;
+use super::lanes::{Lanes, WIDTH, concentration};
+use super::lattice::{Lattice, next_to_border};
 use firmware_sim::scenario::Scenario;
 use grn_core::field::Field;
 use grn_core::geometry::Point;
 
 /// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
-pub const LATTICE_STEP: f64 = 0.125;
+pub const LATTICE_STEP: f64 = 0.2;
 /// Stands for "no wall near": every kernel is 0 there.
 const FAR: f64 = 1e3;
 
@@ -32,6 +33,8 @@ pub struct World {
     pub(super) clearance: Vec<f64>,
     /// x2 at each node.
     pub(super) x2: Vec<f64>,
+    /// Whether a node is in a wall or at the border.
+    pub(super) leaks: Vec<bool>,
 }
 
 impl World {
@@ -46,10 +49,13 @@ impl World {
             targets,
         });
         let snapshots = snapshots.collect();
-        let mut world = World { field, snapshots, clearance: Vec::new(), x2: Vec::new(), lattice, scenario };
+        let mut world =
+            World { field, snapshots, clearance: Vec::new(), x2: Vec::new(), leaks: Vec::new(), lattice, scenario };
         let points = world.lattice.nodes().map(|node| world.lattice.point(node));
         world.clearance = points.map(|point| world.clearance_at(point)).collect();
         world.x2 = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
+        let leaks = |node| next_to_border(&world.lattice, node) || world.clearance[node] <= 0.0;
+        world.leaks = world.lattice.nodes().map(leaks).collect();
         world
     }
 
@@ -83,6 +89,24 @@ impl World {
 
     pub(super) fn x2_at(&self, clearance: f64) -> f64 {
         if self.scenario.walls().is_empty() { 0.0 } else { self.field.obstacle_concentration(clearance.max(0.0)) }
+    }
+
+    pub(super) fn x1_at_all(&self, snapshot: &Snapshot, points: &[Point<f64>; WIDTH]) -> Lanes {
+        let morphogen = self.scenario.morphogen();
+        let contribution = |&target: &Point<f64>| {
+            let squared = points.map(|point| (point - target).dot(point - target));
+            concentration(morphogen.kernel, morphogen.target_width, Lanes(squared))
+        };
+        snapshot.targets.iter().map(contribution).fold(Lanes::splat(0.0), |sum, next| sum + next)
+    }
+
+    pub(super) fn x2_at_all(&self, clearance: Lanes) -> Lanes {
+        if self.scenario.walls().is_empty() {
+            return Lanes::splat(0.0);
+        }
+        let morphogen = self.scenario.morphogen();
+        let outside = Lanes(clearance.0.map(|clearance| clearance.max(0.0)));
+        concentration(morphogen.kernel, morphogen.obstacle_width, outside * outside)
     }
 
     /// Whether `point` is nearer than `distance` metres to a wall.

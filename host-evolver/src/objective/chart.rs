@@ -1,0 +1,84 @@
+//! A model's pattern error tabulated over its two inputs, for deciding which lattice nodes are inside.
+
+use super::lanes::{Lanes, WIDTH};
+use super::model::Model;
+
+/// Divisions of the unit interval of x1 and x2; x1 runs from 0 to the number of targets.
+const X1_DIVISIONS: usize = 32;
+const X2_DIVISIONS: usize = 16;
+
+/// φ at a grid of (x1, x2), between which it is interpolated linearly.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chart {
+    columns: usize,
+    errors: Vec<f64>,
+    accuracy: f64,
+}
+
+impl Chart {
+    /// Fills the chart for a model and for x1 up to `targets`.
+    pub(super) fn draw(&mut self, model: &Model, targets: usize) {
+        // One column more than needed, so that the last cell has a far side.
+        self.columns = (targets * X1_DIVISIONS + 2).next_multiple_of(WIDTH);
+        self.errors.clear();
+        for row in 0..X2_DIVISIONS + 2 {
+            let x2 = Lanes::splat(row as f64 / X2_DIVISIONS as f64);
+            for first in (0..self.columns).step_by(WIDTH) {
+                let x1 = Lanes(std::array::from_fn(|lane| (first + lane) as f64 / X1_DIVISIONS as f64));
+                self.errors.extend(model.errors(x1, x2).0);
+            }
+        }
+        self.accuracy = self.largest_second_difference() / 8.0;
+    }
+
+    /// How far [`Chart::at`] may be off: an eighth of the largest second differences along both axes.
+    pub(super) fn accuracy(&self) -> f64 {
+        self.accuracy
+    }
+
+    fn largest_second_difference(&self) -> f64 {
+        let errors = &self.errors;
+        let largest = |stride: usize| {
+            let triples =
+                (stride..errors.len() - stride).map(|i| errors[i - stride] + errors[i + stride] - 2.0 * errors[i]);
+            triples.fold(0.0_f64, |largest, difference| largest.max(difference.abs()))
+        };
+        let along_rows = errors.chunks(self.columns).flat_map(|row| row.windows(3));
+        let along_rows = along_rows.fold(0.0_f64, |most, w| most.max((w[0] + w[2] - 2.0 * w[1]).abs()));
+        along_rows + largest(self.columns)
+    }
+
+    /// φ at (x1, x2) in the charted range, by bilinear interpolation.
+    pub(super) fn at(&self, x1: f64, x2: f64) -> f64 {
+        let (east, north) = (x1 * X1_DIVISIONS as f64, x2 * X2_DIVISIONS as f64);
+        let (column, row) = (east as usize, north as usize);
+        let (t, u) = (east - column as f64, north - row as f64);
+        let corner = row * self.columns + column;
+        let near = &self.errors[corner..corner + 2];
+        let far = &self.errors[corner + self.columns..corner + self.columns + 2];
+        let (below, above) = (near[0] + (near[1] - near[0]) * t, far[0] + (far[1] - far[0]) * t);
+        below + (above - below) * u
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::PUBLISHED;
+
+    #[test]
+    fn the_chart_keeps_its_promised_accuracy() {
+        for published in &PUBLISHED {
+            let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
+            let mut chart = Chart::default();
+            chart.draw(&model, 2);
+            for i in 0..=200 {
+                for j in 0..=100 {
+                    let (x1, x2) = (f64::from(i) * 0.01, f64::from(j) * 0.01);
+                    let error = (chart.at(x1, x2) - model.error(x1, x2)).abs();
+                    assert!(error <= 1.1 * chart.accuracy(), "{}: off by {error}", published.name);
+                }
+            }
+        }
+    }
+}

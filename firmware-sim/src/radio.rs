@@ -1,6 +1,6 @@
 //! Broadcasts between robots: limited range, independent loss, the nearest first. Walls do not block it.
 
-use crate::grid::Grid;
+use crate::grid::{Grid, Neighbour};
 use crate::random::{Component, Stream};
 use grn_core::geometry::Point;
 use grn_core::robot::Message;
@@ -38,7 +38,7 @@ pub struct Radio {
     /// What will be in the next tick.
     sending: Vec<Option<Message>>,
     receivers: Vec<Receiver>,
-    candidates: Vec<(f64, u16)>,
+    candidates: Vec<Neighbour>,
 }
 
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Radio {
             sent: vec![None; robots],
             sending: vec![None; robots],
             receivers: (0..robots).map(receiver).collect(),
-            candidates: Vec::with_capacity(robots),
+            candidates: vec![Neighbour::default(); robots + 1],
         }
     }
 
@@ -86,30 +86,32 @@ impl Radio {
     pub fn deliver(&mut self, receiver: usize, position: Point<f64>, percept: &mut Percept) {
         percept.heard.clear();
         let Receiver { losses, enough } = &mut self.receivers[receiver];
-        let near = enough.min(self.range_squared);
-        // First the near senders; only if they do not fill the inbox, the others.
-        for (above, limit) in [(-1.0, near), (near, self.range_squared)] {
-            if above >= limit || percept.heard.is_full() {
-                break;
-            }
-            self.candidates.clear();
-            self.grid.within(position, limit, |sender, squared| {
-                if squared > above && usize::from(sender) != receiver {
-                    self.candidates.push((squared, sender));
-                }
-            });
-            self.candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            for &(_, sender) in &self.candidates {
-                let Some(message) = &self.sent[usize::from(sender)] else { continue };
-                if losses.unit() >= self.loss && percept.heard.push(message.clone()).is_ok() && percept.heard.is_full()
-                {
-                    break;
-                }
-            }
-            *enough = match self.candidates.get(USUAL_CANDIDATES - 1) {
-                Some(&(squared, _)) => squared * 1.25,
+        // All bits that a neighbour's number takes the place of are set: none of equal rank is cut off.
+        let near = f64::from_bits(enough.to_bits() | 0xff).min(self.range_squared);
+        // First the near senders; only if they do not fill the inbox, the others, which sort after them.
+        let mut done = 0;
+        for limit in [near, self.range_squared] {
+            let count = self.grid.collect_within(position, limit, &mut self.candidates);
+            let candidates = &mut self.candidates[..count];
+            candidates.sort_unstable();
+            *enough = match candidates.get(USUAL_CANDIDATES) {
+                Some(last) => last.squared() * 1.1,
                 None => limit * 2.0,
             };
+            for sender in candidates.iter().skip(done).map(|candidate| candidate.robot()) {
+                if sender == receiver {
+                    continue;
+                }
+                let Some(message) = &self.sent[sender] else { continue };
+                if losses.unit() >= self.loss && percept.heard.push(message.clone()).is_ok() && percept.heard.is_full()
+                {
+                    return;
+                }
+            }
+            if limit >= self.range_squared {
+                return;
+            }
+            done = count;
         }
     }
 }

@@ -107,6 +107,9 @@ impl Grid {
     }
 }
 
+/// Room for every neighbour that can be found, and one more; a power of two.
+pub const ROOM: usize = 256;
+
 /// A neighbour as a number that sorts by distance and then by robot: the squared distance's bits (nonnegative floats sort
 /// like their bits), of which the last eight give way to the robot's number, at most 255.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,16 +132,16 @@ impl Neighbour {
 }
 
 impl Grid {
-    /// Like [`within`](Grid::within), for at most 256 robots, without a branch per candidate: writes the neighbours found
-    /// to the front of `found`, which must be longer than there are robots, and returns how many there are.
-    pub fn collect_within(&self, position: Point<f64>, limit: f64, found: &mut [Neighbour]) -> usize {
+    /// Like [`within`](Grid::within), for fewer than [`ROOM`] robots, without a branch per candidate: writes the neighbours
+    /// found to the front of `found`, and returns how many there are.
+    pub fn collect_within(&self, position: Point<f64>, limit: f64, found: &mut [Neighbour; ROOM]) -> usize {
         let mut count = 0;
         for range in self.around(position) {
             let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
             for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
                 let (dx, dy) = (x - position.x, y - position.y);
                 let squared = dx * dx + dy * dy;
-                found[count] = Neighbour::new(robot, squared);
+                found[count & (ROOM - 1)] = Neighbour::new(robot, squared);
                 count += usize::from(squared <= limit);
             }
         }
@@ -224,9 +227,9 @@ mod tests {
                     (0..).zip(&positions).map(|(i, &p)| (i, length_squared(p - here))).collect();
                 let expected: Vec<_> = expected.into_iter().filter(|e| e.1 <= reach * reach).collect();
                 assert_eq!(found, expected);
-                let mut collected = vec![Neighbour::default(); positions.len() + 1];
-                let count = grid.collect_within(here, reach * reach, &mut collected);
-                collected.truncate(count);
+                let mut room = [Neighbour::default(); ROOM];
+                let count = grid.collect_within(here, reach * reach, &mut room);
+                let mut collected = room[..count].to_vec();
                 collected.sort_unstable();
                 found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
                 let robots = |neighbour: &Neighbour| neighbour.robot() as u16;

@@ -1,6 +1,6 @@
 //! Broadcasts between robots: limited range, independent loss, the nearest first. Walls do not block it.
 
-use crate::grid::{Grid, Neighbour};
+use crate::grid::{Grid, Neighbour, ROOM};
 use crate::random::{Component, Stream};
 use grn_core::geometry::Point;
 use grn_core::robot::Message;
@@ -38,7 +38,7 @@ pub struct Radio {
     /// What will be in the next tick.
     sending: Vec<Option<Message>>,
     receivers: Vec<Receiver>,
-    candidates: Vec<Neighbour>,
+    candidates: Box<[Neighbour; ROOM]>,
 }
 
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Radio {
             sent: vec![None; robots],
             sending: vec![None; robots],
             receivers: (0..robots).map(receiver).collect(),
-            candidates: vec![Neighbour::default(); robots + 1],
+            candidates: Box::new([Neighbour::default(); ROOM]),
         }
     }
 

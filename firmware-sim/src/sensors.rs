@@ -75,8 +75,9 @@ impl ProximityRing {
             let along = offset.x * cos + offset.y * sin;
             let aside = offset.x * sin - offset.y * cos;
             let room = BODY_RADIUS * BODY_RADIUS - aside * aside;
-            let distance = along - room.max(0.0).sqrt() - BODY_RADIUS;
-            let met = along > 0.0 && room >= 0.0 && distance < *free;
+            let distance = along - (if room > 0.0 { room } else { 0.0 }).sqrt() - BODY_RADIUS;
+            // Without short circuits the eight sensors are computed side by side.
+            let met = (along > 0.0) & (room >= 0.0) & (distance < *free);
             *free = if met { distance } else { *free };
         }
     }
@@ -93,7 +94,7 @@ impl ProximityRing {
             let per_denominator = 1.0 / (cos * along.y - sin * along.x);
             let distance = crossed * per_denominator - BODY_RADIUS;
             let share = (start.x * sin - start.y * cos) * per_denominator;
-            let met = distance >= -BODY_RADIUS && share * (1.0 - share) >= 0.0 && distance < *free;
+            let met = (distance >= -BODY_RADIUS) & (share * (1.0 - share) >= 0.0) & (distance < *free);
             *free = if met { distance } else { *free };
         }
     }

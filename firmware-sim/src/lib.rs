@@ -1,10 +1,44 @@
 //! Software-in-the-loop simulation: a world around robots that run `grn-core` unchanged.
 //!
 //! What a robot may know and do is [`Percept`](grn_core::robot::Percept) and [`Command`](grn_core::robot::Command);
-//! everything else in here is the simulator's knowledge. Results are the same bits on every machine: single-threaded,
-//! seeded, and without the platform's transcendental functions.
+//! everything else in here is the simulator's knowledge. From the bottom up:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`geometry`] | polygons, walls, rays, hulls |
+//! | [`scenario`] | the TOML world: target paths, walls, morphogens, ring |
+//! | [`random`] | one portable random stream per component |
+//! | [`body`] | wheels and differential drive |
+//! | [`grid`] | neighbour queries |
+//! | [`sensors`] | localisation, proximity, far sense |
+//! | [`radio`] | broadcasts with range and loss |
+//! | [`contacts`] | collisions, resolved and counted |
+//! | [`brain`] | what drives a robot |
+//! | [`config`] | a run's parameters |
+//! | [`swarm`] | the world in motion |
+//! | [`trace`] | a recorded run |
+//! | [`metrics`] | what a recorded run is worth |
+//!
+//! Results are the same bits on every machine: single-threaded, seeded, and without the platform's transcendental
+//! functions.
 
+pub mod body;
+pub mod brain;
+pub mod config;
+pub mod contacts;
 pub mod geometry;
+pub mod grid;
+pub mod metrics;
+pub mod radio;
+pub mod random;
 pub mod scenario;
+pub mod sensors;
+pub mod swarm;
+pub mod trace;
 
+pub use brain::{Brain, BrainError};
+pub use config::{ConfigError, SwarmConfig};
+pub use metrics::{Metrics, MetricsOptions};
 pub use scenario::{Scenario, ScenarioError};
+pub use swarm::{Outcome, Progress, StepError, Swarm};
+pub use trace::{Trace, TraceError};

@@ -1,0 +1,153 @@
+//! The e-puck2's body: stepper wheels on a timer, and differential drive along exact arcs.
+
+use grn_core::geometry::{Point, Vector};
+use grn_core::robot::epuck2::{AXLE, MAX_WHEEL_SPEED, STEP_TIMER_HZ, STEPS_PER_TURN, TICKS_PER_SECOND, WHEEL_DIAMETER};
+
+/// Where a robot is and where it looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Centre of the body, metres.
+    pub position: Point<f64>,
+    /// Heading as a unit vector (cos, sin).
+    pub heading: Vector<f64>,
+}
+
+/// One robot's own measures, which differ a little between robots of a kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyParameters {
+    /// Diameter of the left and of the right wheel, metres.
+    pub wheel_diameters: [f64; 2],
+    /// Distance between the wheels, metres.
+    pub axle: f64,
+}
+
+impl Default for BodyParameters {
+    /// The data sheet's robot.
+    fn default() -> Self {
+        BodyParameters { wheel_diameters: [WHEEL_DIAMETER; 2], axle: AXLE }
+    }
+}
+
+impl BodyParameters {
+    /// The data sheet's robot with every measure multiplied by its own factor: left wheel, right wheel, axle.
+    pub fn varied([left, right, axle]: [f64; 3]) -> Self {
+        BodyParameters { wheel_diameters: [WHEEL_DIAMETER * left, WHEEL_DIAMETER * right], axle: AXLE * axle }
+    }
+}
+
+/// The speed, steps per second, at which a wheel turns when commanded to `speed` steps per second: limited to ±1100,
+/// then 50000 / ⌊50000 / |speed|⌋, because the motor timer counts whole ticks. 0 stands still.
+pub fn actual_speed(speed: i16) -> f64 {
+    let magnitude = u32::from(speed.unsigned_abs()).min(u32::from(MAX_WHEEL_SPEED.unsigned_abs()));
+    let Some(period) = STEP_TIMER_HZ.checked_div(magnitude) else { return 0.0 };
+    let actual = f64::from(STEP_TIMER_HZ) / f64::from(period);
+    if speed < 0 { -actual } else { actual }
+}
+
+/// Turns wheel commands into motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// Metres per tick at one step per second, left and right.
+    roll: [f64; 2],
+    per_axle: f64,
+}
+
+impl Drive {
+    /// The drive of a body with these measures.
+    pub fn new(parameters: &BodyParameters) -> Self {
+        let per_step = core::f64::consts::PI / f64::from(STEPS_PER_TURN) / f64::from(TICKS_PER_SECOND);
+        Drive { roll: parameters.wheel_diameters.map(|diameter| diameter * per_step), per_axle: 1.0 / parameters.axle }
+    }
+
+    /// The pose one tick (1/32 s) later, with wheels commanded to these speeds in steps per second: the exact arc.
+    #[must_use]
+    pub fn advanced(&self, pose: Pose, left: i16, right: i16) -> Pose {
+        if left == 0 && right == 0 {
+            return pose;
+        }
+        let rolled_left = actual_speed(left) * self.roll[0];
+        let rolled_right = actual_speed(right) * self.roll[1];
+        let half_turn = (rolled_right - rolled_left) * self.per_axle / 2.0;
+        let (sin, cos) = libm::sincos(half_turn);
+        // The chord of an arc of angle 2h is its length times sin(h)/h, and points along the middle heading.
+        let shortening = if half_turn.abs() < 1e-6 { 1.0 } else { sin / half_turn };
+        let turned = |v: Vector<f64>| Vector::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos);
+        let middle = turned(pose.heading);
+        let heading = turned(middle);
+        // One Newton step keeps the heading's length at 1 against rounding.
+        let correction = 1.5 - 0.5 * (heading.x * heading.x + heading.y * heading.y);
+        Pose {
+            position: pose.position + middle * ((rolled_left + rolled_right) / 2.0 * shortening),
+            heading: heading * correction,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grn_core::robot::epuck2::METRES_PER_STEP;
+
+    const START: Pose = Pose { position: Vector::new(0.3, -0.2), heading: Vector::new(0.6, 0.8) };
+
+    fn drive() -> Drive {
+        Drive::new(&BodyParameters::default())
+    }
+
+    #[test]
+    fn the_timer_makes_speeds_discrete() {
+        for (commanded, actual) in [(0, 0.0), (1, 1.0), (3, 50_000.0 / 16_666.0), (1000, 1000.0), (999, 1000.0)] {
+            assert_eq!((actual_speed(commanded), actual_speed(-commanded)), (actual, -actual), "{commanded}");
+        }
+        assert_eq!(actual_speed(1100), 50_000.0 / 45.0);
+        assert_eq!((actual_speed(i16::MAX), actual_speed(i16::MIN)), (50_000.0 / 45.0, -50_000.0 / 45.0));
+    }
+
+    #[test]
+    fn straight_ahead_is_straight() {
+        let mut pose = START;
+        for _ in 0..32 {
+            pose = drive().advanced(pose, 1000, 1000);
+        }
+        let expected = START.position + START.heading * (1000.0 * METRES_PER_STEP);
+        assert!((pose.position - expected).length() < 1e-12);
+        assert_eq!(pose.heading, START.heading);
+    }
+
+    #[test]
+    fn opposite_wheels_turn_on_the_spot() {
+        let pose = drive().advanced(START, -500, 500);
+        let angle = 2.0 * 500.0 * METRES_PER_STEP / AXLE / 32.0;
+        assert!((pose.position - START.position).length() < 1e-15);
+        assert!((START.heading.cross(pose.heading) - libm::sin(angle)).abs() < 1e-14);
+        assert!((START.heading.dot(pose.heading) - libm::cos(angle)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn many_ticks_follow_the_closed_form_circle() {
+        let mut pose = START;
+        let ticks = 10_000;
+        for _ in 0..ticks {
+            pose = drive().advanced(pose, 500, 1000);
+            assert!((pose.heading.length() - 1.0).abs() < 1e-15);
+        }
+        let (left, right) = (500.0 * METRES_PER_STEP, 1000.0 * METRES_PER_STEP);
+        let radius = AXLE / 2.0 * (right + left) / (right - left);
+        let angle = (right - left) / AXLE * f64::from(ticks) / 32.0;
+        let centre = START.position + START.heading.turned_left() * radius;
+        let (sin, cos) = libm::sincos(angle);
+        let arm = START.position - centre;
+        let expected = centre + Vector::new(arm.x * cos - arm.y * sin, arm.x * sin + arm.y * cos);
+        assert!((pose.position - expected).length() < 1e-9, "{:?} {expected:?}", pose.position);
+    }
+
+    #[test]
+    fn a_larger_wheel_pulls_to_the_other_side() {
+        let odd = Drive::new(&BodyParameters::varied([1.0, 1.02, 1.0])).advanced(START, 800, 800);
+        let angle = libm::asin(START.heading.cross(odd.heading));
+        assert!((angle - 0.02 * 50_000.0 / 62.0 * METRES_PER_STEP / AXLE / 32.0).abs() < 1e-12);
+        let wide = Drive::new(&BodyParameters::varied([1.0, 1.0, 2.0])).advanced(START, -500, 500);
+        let normal = drive().advanced(START, -500, 500);
+        assert!(START.heading.cross(wide.heading) < 0.6 * START.heading.cross(normal.heading));
+    }
+}

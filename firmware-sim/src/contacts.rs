@@ -1,0 +1,213 @@
+//! Robots that run into each other or into walls: pushed apart, and counted.
+
+use crate::body::Pose;
+use crate::geometry::{Walls, length_squared};
+use crate::grid::WallIndex;
+use grn_core::geometry::Vector;
+use grn_core::robot::epuck2::BODY_RADIUS;
+use serde::{Deserialize, Serialize};
+
+/// A contact ends when the gap has grown beyond this, metres: what trembles at touching distance is one contact.
+pub const RELEASE_GAP: f64 = 0.001;
+/// How often overlaps are resolved per tick; a push may cause the next overlap.
+const PASSES: usize = 4;
+
+/// What touched in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ContactCounts {
+    /// Pairs of robots that began to touch.
+    pub peer_events: u16,
+    /// Robots that began to touch walls.
+    pub wall_events: u16,
+    /// Pairs of robots in contact.
+    pub peers: u16,
+    /// Robots in contact with walls.
+    pub walls: u16,
+}
+
+/// Who touches whom.
+#[derive(Debug)]
+pub struct Contacts {
+    robots: usize,
+    touching: Vec<bool>,
+    pairs: Vec<(u16, u16)>,
+    at_wall: Vec<bool>,
+}
+
+impl Contacts {
+    /// No contacts among this many robots.
+    pub fn new(robots: usize) -> Self {
+        Contacts {
+            robots,
+            touching: vec![false; robots * robots],
+            pairs: Vec::with_capacity(robots * 8),
+            at_wall: vec![false; robots],
+        }
+    }
+
+    /// Pushes overlapping bodies apart and out of walls, and counts. `near` holds every pair that can overlap.
+    pub fn resolve(
+        &mut self,
+        poses: &mut [Pose],
+        near: &[(u16, u16)],
+        walls: &Walls,
+        index: &WallIndex,
+    ) -> ContactCounts {
+        let mut counts = ContactCounts::default();
+        for _ in 0..PASSES {
+            let mut moved = false;
+            for &(a, b) in near {
+                let (i, j) = (usize::from(a), usize::from(b));
+                let offset = poses[j].position - poses[i].position;
+                let squared = length_squared(offset);
+                if squared >= 4.0 * BODY_RADIUS * BODY_RADIUS {
+                    continue;
+                }
+                moved = true;
+                let distance = squared.sqrt();
+                let direction = if distance > 0.0 { offset * (1.0 / distance) } else { Vector::new(1.0, 0.0) };
+                let push = direction * (BODY_RADIUS - distance / 2.0);
+                poses[i].position = poses[i].position - push;
+                poses[j].position = poses[j].position + push;
+                let cell = i * self.robots + j;
+                if !self.touching[cell] {
+                    self.touching[cell] = true;
+                    self.pairs.push((a, b));
+                    counts.peer_events += 1;
+                }
+            }
+            for (pose, at_wall) in poses.iter_mut().zip(&mut self.at_wall) {
+                if push_out(pose, walls, index) {
+                    moved = true;
+                    counts.wall_events += u16::from(!*at_wall);
+                    *at_wall = true;
+                }
+            }
+            if !moved {
+                break;
+            }
+        }
+        self.release(poses, index);
+        counts.peers = self.pairs.len().min(usize::from(u16::MAX)) as u16;
+        counts.walls = self.at_wall.iter().map(|&touches| u16::from(touches)).sum();
+        counts
+    }
+
+    /// Forgets contacts whose gap has opened.
+    fn release(&mut self, poses: &[Pose], index: &WallIndex) {
+        let Contacts { robots, touching, pairs, at_wall } = self;
+        let limit = (2.0 * BODY_RADIUS + RELEASE_GAP) * (2.0 * BODY_RADIUS + RELEASE_GAP);
+        pairs.retain(|&(a, b)| {
+            let (i, j) = (usize::from(a), usize::from(b));
+            let keep = length_squared(poses[j].position - poses[i].position) <= limit;
+            touching[i * *robots + j] = keep;
+            keep
+        });
+        let limit = (BODY_RADIUS + RELEASE_GAP) * (BODY_RADIUS + RELEASE_GAP);
+        for (pose, at_wall) in poses.iter().zip(at_wall).filter(|(_, at_wall)| **at_wall) {
+            let p = pose.position;
+            *at_wall = index.near(p).iter().any(|edge| length_squared(edge.nearest(p) - p) <= limit);
+        }
+    }
+}
+
+/// Moves a body that overlaps a wall out of it; false if it overlaps none.
+fn push_out(pose: &mut Pose, walls: &Walls, index: &WallIndex) -> bool {
+    let mut pushed = false;
+    for edge in index.near(pose.position) {
+        let boundary = edge.nearest(pose.position);
+        let offset = pose.position - boundary;
+        let squared = length_squared(offset);
+        if squared >= BODY_RADIUS * BODY_RADIUS {
+            continue;
+        }
+        let distance = squared.sqrt();
+        let inside = walls.containing(pose.position).is_some();
+        let outwards = match distance > 0.0 {
+            true if inside => offset * (-1.0 / distance),
+            true => offset * (1.0 / distance),
+            // Exactly on the edge: of its two sides, the one outside.
+            false => {
+                let along = (edge.end() - edge.start()).direction().unwrap_or(Vector::ZERO);
+                let left = along.turned_left();
+                if walls.containing(boundary + left * BODY_RADIUS).is_some() { -left } else { left }
+            }
+        };
+        pose.position = boundary + outwards * BODY_RADIUS;
+        pushed = true;
+    }
+    pushed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Polygon;
+
+    fn pose(x: f64, y: f64) -> Pose {
+        Pose { position: Vector::new(x, y), heading: Vector::new(1.0, 0.0) }
+    }
+
+    fn open() -> (Walls, WallIndex) {
+        (Walls::default(), WallIndex::new(&Walls::default(), 0.1))
+    }
+
+    #[test]
+    fn overlapping_robots_part_equally() {
+        let (walls, index) = open();
+        let mut contacts = Contacts::new(2);
+        let mut poses = [pose(0.0, 0.0), pose(0.05, 0.0)];
+        let counts = contacts.resolve(&mut poses, &[(0, 1)], &walls, &index);
+        assert_eq!((counts.peer_events, counts.peers, counts.wall_events), (1, 1, 0));
+        assert!((poses[0].position.x + 0.01).abs() < 1e-12 && (poses[1].position.x - 0.06).abs() < 1e-12);
+        let mut same = [pose(1.0, 1.0), pose(1.0, 1.0)];
+        contacts.resolve(&mut same, &[(0, 1)], &walls, &index);
+        assert!(((same[1].position - same[0].position).length() - 0.07).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_contact_is_counted_once_until_released() {
+        let (walls, index) = open();
+        let mut contacts = Contacts::new(2);
+        let mut events = Vec::new();
+        // Overlap, tremble within the release gap, overlap, part, overlap.
+        for gap in [-0.002, 0.0005, -0.001, 0.0005, 0.002, -0.001] {
+            let mut poses = [pose(0.0, 0.0), pose(2.0 * BODY_RADIUS + gap, 0.0)];
+            let counts = contacts.resolve(&mut poses, &[(0, 1)], &walls, &index);
+            events.push((counts.peer_events, counts.peers));
+        }
+        assert_eq!(events, [(1, 1), (0, 1), (0, 1), (0, 1), (0, 0), (1, 1)]);
+    }
+
+    #[test]
+    fn walls_hold_and_are_counted() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Vector::new(x, y));
+        let walls = Walls::new(vec![Polygon::new(square.to_vec()).unwrap()]);
+        let index = WallIndex::new(&walls, 0.1);
+        let mut contacts = Contacts::new(5);
+        // Beside an edge, just inside it, on it, over a corner, and clear of it.
+        let mut poses = [pose(0.5, -0.03), pose(0.5, 0.01), pose(1.0, 0.5), pose(1.02, 1.02), pose(-0.1, 0.5)];
+        let counts = contacts.resolve(&mut poses, &[], &walls, &index);
+        assert_eq!((counts.wall_events, counts.walls), (4, 4));
+        for (pose, (x, y)) in poses.iter().zip([(0.5, -0.035), (0.5, -0.035), (1.035, 0.5)]) {
+            assert!((pose.position - Vector::new(x, y)).length() < 1e-12, "{pose:?}");
+        }
+        assert!(poses.iter().all(|p| walls.signed_distance(p.position) >= BODY_RADIUS - 1e-12));
+        let counts = contacts.resolve(&mut poses, &[], &walls, &index);
+        assert_eq!((counts.wall_events, counts.walls), (0, 4));
+        poses[0] = pose(0.5, -0.1);
+        assert_eq!(contacts.resolve(&mut poses, &[], &walls, &index).walls, 3);
+    }
+
+    #[test]
+    fn a_robot_pushed_against_a_wall_does_not_enter_it() {
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| Vector::new(x, y));
+        let walls = Walls::new(vec![Polygon::new(square.to_vec()).unwrap()]);
+        let index = WallIndex::new(&walls, 0.1);
+        let mut poses = [pose(0.5, -0.036), pose(0.5, -0.1)];
+        let counts = Contacts::new(2).resolve(&mut poses, &[(0, 1)], &walls, &index);
+        assert_eq!((counts.peer_events, counts.wall_events), (1, 1));
+        assert!(poses[0].position.y <= -BODY_RADIUS + 1e-12);
+        assert!((poses[1].position - poses[0].position).length() > 0.0695);
+    }
+}

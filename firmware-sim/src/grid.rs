@@ -1,0 +1,263 @@
+//! Who is near: a uniform grid of robots, rebuilt each tick without allocating, and a fixed grid of wall edges.
+
+use crate::geometry::{Bounds, Edge, Walls, length_squared};
+use core::ops::Range;
+use grn_core::geometry::{Point, Vector};
+
+/// The most cells a side; a swarm spread wider gets larger cells.
+const MAX_SIDE: usize = 64;
+
+/// Robots sorted by cell. Coordinates are kept beside the sorted order, each in an array of its own.
+#[derive(Debug)]
+pub struct Grid {
+    reach: f64,
+    low: Point<f64>,
+    per_cell: f64,
+    columns: usize,
+    rows: usize,
+    starts: Vec<u32>,
+    robots: Vec<u16>,
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+}
+
+impl Grid {
+    /// A grid that finds what lies within `reach` metres.
+    pub fn new(reach: f64, robots: usize) -> Self {
+        Grid {
+            reach,
+            low: Vector::ZERO,
+            per_cell: 0.0,
+            columns: 1,
+            rows: 1,
+            starts: Vec::with_capacity(MAX_SIDE * MAX_SIDE + 2),
+            robots: vec![0; robots],
+            xs: vec![0.0; robots],
+            ys: vec![0.0; robots],
+        }
+    }
+
+    /// Sorts robots by where they are now; as many as the grid was made for.
+    pub fn rebuild(&mut self, positions: &[Point<f64>]) {
+        let Some(bounds) = Bounds::around(positions.iter().copied()) else { return };
+        let extent = bounds.high - bounds.low;
+        // Slightly larger than the reach, so that rounding cannot put a neighbour two cells away.
+        let cell = (self.reach * 1.000_001).max(extent.x.max(extent.y) / (MAX_SIDE - 1) as f64);
+        self.low = bounds.low;
+        self.per_cell = 1.0 / cell;
+        self.columns = (extent.x * self.per_cell) as usize + 1;
+        self.rows = (extent.y * self.per_cell) as usize + 1;
+        self.starts.clear();
+        self.starts.resize(self.columns * self.rows + 2, 0);
+        for &position in positions {
+            let cell = self.cell(position);
+            self.starts[cell + 2] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut self.starts {
+            sum += *start;
+            *start = sum;
+        }
+        for (robot, &position) in positions.iter().enumerate() {
+            let next = self.cell(position) + 1;
+            let place = self.starts[next] as usize;
+            self.starts[next] += 1;
+            self.robots[place] = robot as u16;
+            self.xs[place] = position.x;
+            self.ys[place] = position.y;
+        }
+    }
+
+    fn cell(&self, position: Point<f64>) -> usize {
+        let (column, row) = self.column_row(position);
+        row * self.columns + column
+    }
+
+    fn column_row(&self, position: Point<f64>) -> (usize, usize) {
+        let column = ((position.x - self.low.x) * self.per_cell) as usize;
+        let row = ((position.y - self.low.y) * self.per_cell) as usize;
+        (column.min(self.columns - 1), row.min(self.rows - 1))
+    }
+
+    /// The sorted order's ranges that hold everything within reach of `position`, a position the grid was built from.
+    fn around(&self, position: Point<f64>) -> impl Iterator<Item = Range<usize>> + '_ {
+        let (column, row) = self.column_row(position);
+        let first = column.saturating_sub(1);
+        let last = (column + 1).min(self.columns - 1);
+        (row.saturating_sub(1)..=(row + 1).min(self.rows - 1)).map(move |row| {
+            let from = self.starts[row * self.columns + first] as usize;
+            from..self.starts[row * self.columns + last + 1] as usize
+        })
+    }
+
+    /// Calls `found(robot, squared distance)` for every robot whose squared distance from `position` (a position the
+    /// grid was built from) is at most `limit`, which is at most the square of the grid's reach.
+    #[inline]
+    pub fn within(&self, position: Point<f64>, limit: f64, mut found: impl FnMut(u16, f64)) {
+        for range in self.around(position) {
+            let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
+            for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
+                let (dx, dy) = (x - position.x, y - position.y);
+                let squared = dx * dx + dy * dy;
+                if squared <= limit {
+                    found(robot, squared);
+                }
+            }
+        }
+    }
+}
+
+/// Room for every neighbour that can be found, and one more; a power of two.
+pub const ROOM: usize = 256;
+
+/// A neighbour as a number that sorts by distance and then by robot: the squared distance's bits (nonnegative floats sort
+/// like their bits), of which the last eight give way to the robot's number, at most 255.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Neighbour(u64);
+
+impl Neighbour {
+    fn new(robot: u16, squared: f64) -> Self {
+        Neighbour((squared.to_bits() & !0xff) | u64::from(robot & 0xff))
+    }
+
+    /// Which robot.
+    pub fn robot(self) -> usize {
+        (self.0 & 0xff) as usize
+    }
+
+    /// Squared distance, to within a relative 2^-44, not rounded up.
+    pub fn squared(self) -> f64 {
+        f64::from_bits(self.0 & !0xff)
+    }
+}
+
+impl Grid {
+    /// Like [`within`](Grid::within), for fewer than [`ROOM`] robots, without a branch per candidate: writes the neighbours
+    /// found to the front of `found`, and returns how many there are.
+    pub fn collect_within(&self, position: Point<f64>, limit: f64, found: &mut [Neighbour; ROOM]) -> usize {
+        let mut count = 0;
+        for range in self.around(position) {
+            let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
+            for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
+                let (dx, dy) = (x - position.x, y - position.y);
+                let squared = dx * dx + dy * dy;
+                found[count & (ROOM - 1)] = Neighbour::new(robot, squared);
+                count += usize::from(squared <= limit);
+            }
+        }
+        count
+    }
+}
+
+/// Wall edges by the cells they can be felt from.
+#[derive(Debug)]
+pub struct WallIndex {
+    low: Point<f64>,
+    per_cell: f64,
+    columns: usize,
+    rows: usize,
+    starts: Vec<u32>,
+    edges: Vec<Edge>,
+}
+
+impl WallIndex {
+    /// The most cells a side.
+    const SIDE: f64 = 256.0;
+
+    /// An index of the edges within `reach` metres.
+    pub fn new(walls: &Walls, reach: f64) -> Self {
+        let mut index =
+            WallIndex { low: Vector::ZERO, per_cell: 0.0, columns: 0, rows: 0, starts: vec![0], edges: Vec::new() };
+        let Some(bounds) = walls.bounds() else { return index };
+        let margin = Vector::new(reach, reach);
+        index.low = bounds.low - margin;
+        let extent = bounds.high + margin - index.low;
+        let cell = reach.max(extent.x.max(extent.y) / Self::SIDE);
+        index.per_cell = 1.0 / cell;
+        index.columns = (extent.x * index.per_cell) as usize + 1;
+        index.rows = (extent.y * index.per_cell) as usize + 1;
+        // No point of a cell is farther from its centre than half the diagonal, here rounded up.
+        let limit = reach + cell * 0.71;
+        let all: Vec<Edge> = walls.polygons().iter().flat_map(|polygon| polygon.edges().iter().copied()).collect();
+        for row in 0..index.rows {
+            for column in 0..index.columns {
+                let centre = index.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * cell;
+                let near = |edge: &&Edge| length_squared(edge.nearest(centre) - centre) <= limit * limit;
+                index.edges.extend(all.iter().filter(near));
+                index.starts.push(index.edges.len() as u32);
+            }
+        }
+        index
+    }
+
+    /// Every edge within the index's reach of `position`, and perhaps others.
+    #[inline]
+    pub fn near(&self, position: Point<f64>) -> &[Edge] {
+        let x = (position.x - self.low.x) * self.per_cell;
+        let y = (position.y - self.low.y) * self.per_cell;
+        if !(x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64) {
+            return &[];
+        }
+        let cell = y as usize * self.columns + x as usize;
+        &self.edges[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Component, Stream};
+    use crate::scenario::Scenario;
+
+    #[test]
+    fn the_grid_finds_what_brute_force_finds() {
+        let mut stream = Stream::new(3, Component::Placement, 0);
+        for (extent, reach) in [(1.0, 0.12), (1.0, 0.7), (100.0, 0.5), (0.0, 0.1)] {
+            let positions: Vec<Point<f64>> =
+                (0..120).map(|_| Vector::new(stream.symmetric() * extent, stream.symmetric() * extent / 3.0)).collect();
+            let mut grid = Grid::new(reach, positions.len());
+            for _ in 0..2 {
+                grid.rebuild(&positions);
+            }
+            for &here in &positions {
+                let mut found = Vec::new();
+                grid.within(here, reach * reach, |robot, squared| found.push((robot, squared)));
+                found.sort_by_key(|f| f.0);
+                let expected: Vec<(u16, f64)> =
+                    (0..).zip(&positions).map(|(i, &p)| (i, length_squared(p - here))).collect();
+                let expected: Vec<_> = expected.into_iter().filter(|e| e.1 <= reach * reach).collect();
+                assert_eq!(found, expected);
+                let mut room = [Neighbour::default(); ROOM];
+                let count = grid.collect_within(here, reach * reach, &mut room);
+                let mut collected = room[..count].to_vec();
+                collected.sort_unstable();
+                found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+                let robots = |neighbour: &Neighbour| neighbour.robot() as u16;
+                assert!(collected.iter().map(robots).eq(found.iter().map(|f| f.0)));
+                assert!(collected.iter().zip(&found).all(|(c, f)| (c.squared() - f.1).abs() <= f.1 * 1e-13));
+            }
+        }
+    }
+
+    #[test]
+    fn the_index_misses_no_edge_within_reach() {
+        let text = include_str!("../../scenarios/compound-channel.toml");
+        let walls = Scenario::parse(text).unwrap().scaled(0.25).walls().clone();
+        let index = WallIndex::new(&walls, 0.1);
+        let mut stream = Stream::new(4, Component::Placement, 0);
+        let (mut near, mut empty) = (0, 0);
+        for _ in 0..20_000 {
+            let p = Vector::new(stream.unit() * 8.0 - 0.5, stream.unit() * 8.0 - 0.5);
+            let candidates = index.near(p);
+            empty += usize::from(candidates.is_empty());
+            for edge in walls.polygons().iter().flat_map(|polygon| polygon.edges()) {
+                if length_squared(edge.nearest(p) - p) <= 0.01 {
+                    near += 1;
+                    assert!(candidates.contains(edge));
+                }
+            }
+        }
+        assert!(near > 1000 && empty > 10_000, "{near} {empty}");
+        assert!(WallIndex::new(&Walls::default(), 0.1).near(Vector::ZERO).is_empty());
+    }
+}

@@ -1,0 +1,132 @@
+use super::*;
+use crate::geometry::{Polygon, convex_hull, point_in_polygon};
+use crate::random::{Component, Stream};
+use crate::trace::tests::trace_of;
+use grn_core::geometry::Vector;
+
+/// Robots at these bearings (degrees) and this distance from the target at (1, 2).
+fn around(bearings: &[f64], distance: f64) -> Vec<(f64, f64)> {
+    let at = |bearing: &f64| {
+        let (sin, cos) = libm::sincos(bearing.to_radians());
+        (1.0 + distance * cos, 2.0 + distance * sin)
+    };
+    bearings.iter().map(at).collect()
+}
+
+fn gap_deg(bearings: &[f64]) -> f64 {
+    let robots = around(bearings, 0.5).into_iter().map(|(x, y)| Vector::new(x, y));
+    largest_gap(Vector::new(1.0, 2.0), robots, &mut Vec::new()).to_degrees()
+}
+
+const RING: [f64; 5] = [0.0, 72.0, 144.0, 216.0, 288.0];
+const OPEN: [f64; 5] = [0.0, 30.0, 60.0, 90.0, 120.0];
+
+#[test]
+fn gaps_wrap_around() {
+    assert!((gap_deg(&RING) - 72.0).abs() < 1e-9);
+    assert!((gap_deg(&OPEN) - 240.0).abs() < 1e-9);
+    assert!((gap_deg(&[170.0, -170.0, 40.0, -60.0]) - 130.0).abs() < 1e-9);
+    assert_eq!((gap_deg(&[]), gap_deg(&[33.0])), (360.0, 360.0));
+    let at_target = [Vector::new(1.0, 2.0); 4];
+    assert_eq!(largest_gap(Vector::new(1.0, 2.0), at_target, &mut Vec::new()), TAU);
+}
+
+#[test]
+fn exactly_ninety_degrees_does_not_encircle() {
+    // On the axes and on the diagonals: atan2 rounds differently there.
+    for corners in
+        [[(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)], [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]]
+    {
+        let mut robots: Vec<Point<f64>> = corners.iter().map(|&(x, y)| Vector::new(x, y)).collect();
+        assert!(!encircles(largest_gap(Vector::ZERO, robots.clone(), &mut Vec::new())));
+        // One more robot divides one of the four gaps; the others stay.
+        robots.push(Vector::new(corners[0].0 + 0.3, corners[0].1 + 0.3));
+        assert!(!encircles(largest_gap(Vector::ZERO, robots, &mut Vec::new())));
+    }
+    assert!(encircles(gap_deg(&[0.0, 89.9999, 170.0, 250.0, 310.0]).to_radians()));
+    assert!(!encircles(gap_deg(&[0.0, 90.0001, 170.0, 250.0, 310.0]).to_radians()));
+}
+
+#[test]
+fn a_gap_below_180_is_the_same_as_inside_the_hull() {
+    let mut stream = Stream::new(2, Component::Placement, 0);
+    let (mut inside, mut outside) = (0, 0);
+    for _ in 0..2000 {
+        let robots: Vec<Point<f64>> = (0..5).map(|_| Vector::new(stream.symmetric(), stream.symmetric())).collect();
+        let target = Vector::new(stream.symmetric(), stream.symmetric()) * 0.5;
+        let gap = largest_gap(target, robots.clone(), &mut Vec::new());
+        let held = point_in_polygon(&convex_hull(&robots), target);
+        assert_eq!(held, gap < PI, "{robots:?} {target:?}");
+        if held { inside += 1 } else { outside += 1 }
+    }
+    assert!(inside > 200 && outside > 200);
+}
+
+#[test]
+fn forming_takes_two_unbroken_seconds() {
+    // 10 frames open, 60 closed (too few), 5 open, 100 closed, 20 open, 80 closed.
+    let ring = |open| (vec![(1.0, 2.0)], around(if open { &OPEN } else { &RING }, 0.5));
+    let frames: Vec<_> = [(10, true), (60, false), (5, true), (100, false), (20, true), (80, false)]
+        .into_iter()
+        .flat_map(|(count, open)| (0..count).map(move |_| ring(open)))
+        .collect();
+    let metrics = Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions::default(), |_, _| Some(0.02));
+    assert_eq!(metrics.formed_at_s, Some(75.0 / 32.0));
+    assert_eq!(metrics.encircled_share, Some(180.0 / 200.0));
+    assert_eq!(metrics.encircled_share_by_target, Some(vec![180.0 / 200.0]));
+    assert_eq!(metrics.encircled_share_of_run, 240.0 / 275.0);
+    assert_eq!(metrics.duration_s, 274.0 / 32.0);
+    assert!((metrics.largest_gap_deg.unwrap() - 240.0).abs() < 1e-3);
+    assert_eq!((metrics.wall_contacts, metrics.peer_contacts), (2 * 275, 275));
+    assert_eq!((metrics.wall_contact_s, metrics.peer_contact_s), (4.0 * 275.0 / 32.0, 3.0 * 275.0 / 32.0));
+    assert_eq!(metrics.min_wall_clearance_m, None);
+    // 64 ticks are 65 frames: one frame fewer does not form.
+    let frames = |n| vec![ring(false); n];
+    let formed =
+        |n| Metrics::of(&trace_of(&frames(n)), &Walls::default(), &MetricsOptions::default(), |_, _| None).formed_at_s;
+    assert_eq!((formed(64), formed(65)), (None, Some(0.0)));
+}
+
+#[test]
+fn every_target_counts_by_itself() {
+    let mut robots = around(&RING, 0.5);
+    robots.extend(around(&RING, 0.4).into_iter().map(|(x, y)| (x + 3.0, y)));
+    let both = (vec![(1.0, 2.0), (4.0, 2.0)], robots.clone());
+    let lost = (vec![(1.0, 2.0), (4.0, 3.0)], robots);
+    let frames: Vec<_> = (0..160).map(|i| if i < 120 { both.clone() } else { lost.clone() }).collect();
+    let metrics = Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions { reach_m: 1.0 }, |_, _| None);
+    assert_eq!(metrics.encircled_share_by_target, Some(vec![1.0, 0.75]));
+    assert_eq!(metrics.encircled_share, Some(0.75));
+    assert_eq!((metrics.radial_error_median_m, metrics.radial_error_known_share), (None, Some(0.0)));
+}
+
+#[test]
+fn robots_out_of_reach_do_not_encircle() {
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 70];
+    let at = |reach_m| Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions { reach_m }, |_, _| None);
+    assert_eq!((at(0.49).formed_at_s, at(0.51).formed_at_s), (None, Some(0.0)));
+    assert_eq!(at(0.49).spacing_evenness, None);
+}
+
+#[test]
+fn radial_error_clearance_and_evenness() {
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 70];
+    let wall = [(1.8, 0.0), (2.8, 0.0), (2.8, 4.0), (1.8, 4.0)].map(|(x, y)| Vector::new(x, y));
+    let walls = Walls::new(vec![Polygon::new(wall.to_vec()).unwrap()]);
+    // The pattern: the ring of radius 0.49 m, known only on the east side.
+    let distance = |p: Point<f64>, targets: &[Point<f64>]| {
+        let offset = p - targets[0];
+        (offset.x > 0.0).then(|| (offset.length() - 0.49).abs() + if offset.y > 0.1 { 0.2 } else { 0.0 })
+    };
+    let metrics = Metrics::of(&trace_of(&frames), &walls, &MetricsOptions::default(), distance);
+    assert!((metrics.radial_error_median_m.unwrap() - 0.01).abs() < 2e-4);
+    assert!((metrics.radial_error_p95_m.unwrap() - 0.21).abs() < 2e-4);
+    assert_eq!(metrics.radial_error_known_share, Some(0.6));
+    assert!((metrics.min_wall_clearance_m.unwrap() - 0.3).abs() < 1e-9);
+    assert!((metrics.spacing_evenness.unwrap() - 1.0).abs() < 1e-9);
+    let uneven = vec![(vec![(1.0, 2.0)], around(&[0.0, 10.0, 85.0, 160.0, 235.0, 310.0], 0.5)); 70];
+    let metrics = Metrics::of(&trace_of(&uneven), &walls, &MetricsOptions::default(), |_, _| None);
+    let gaps = [10.0, 75.0, 75.0, 75.0, 75.0, 50.0].map(|gap: f64| gap / 360.0);
+    let expected = -gaps.iter().map(|g| g * libm::log(*g)).sum::<f64>() / libm::log(6.0);
+    assert!((metrics.spacing_evenness.unwrap() - expected).abs() < 1e-5);
+}

@@ -1,0 +1,64 @@
+//! Where robots start.
+
+use crate::body::Pose;
+use crate::geometry::length_squared;
+use crate::random::{Component, Stream};
+use crate::scenario::Scenario;
+use core::f64::consts::TAU;
+use grn_core::geometry::{Point, Vector};
+use grn_core::robot::epuck2::BODY_RADIUS;
+
+/// Inner and outer radius of the ring in which robots start, in multiples of the scenario's `d_max`.
+const START_RING: [f64; 2] = [0.3, 1.6];
+/// Free space between bodies and around walls at the start, metres.
+const CLEARANCE: f64 = 0.005;
+/// Misses in a row after which the ring is made a tenth wider.
+const PATIENCE: u32 = 200;
+
+/// `count` robots at random places, with random headings, in a ring around the first target's start: inside the region,
+/// clear of walls and of each other. The ring grows when they do not fit. `None` when even the whole region, at random,
+/// has no room.
+pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec<Pose>> {
+    let mut stream = Stream::new(seed, Component::Placement, 0);
+    let centre = world.targets_at(0.0).first().copied()?;
+    let [inner, mut outer] = START_RING.map(|share| share * world.ring().d_max);
+    let region = world.region();
+    let region_reach = 2.0 * (region[0] + region[1] + centre.length());
+    let mut poses: Vec<Pose> = Vec::with_capacity(count);
+    let mut misses = 0;
+    while poses.len() < count {
+        // Uniform by area.
+        let radius = (inner * inner + stream.unit() * (outer * outer - inner * inner)).sqrt();
+        let position = centre + turned(stream.unit()) * radius;
+        let heading = turned(stream.unit());
+        if free(world, &poses, position) {
+            poses.push(Pose { position, heading });
+            misses = 0;
+            continue;
+        }
+        misses += 1;
+        if misses == PATIENCE {
+            misses = 0;
+            outer *= 1.1;
+            if outer > region_reach {
+                return None;
+            }
+        }
+    }
+    Some(poses)
+}
+
+/// The unit vector after this share of a whole turn.
+fn turned(share: f64) -> Vector<f64> {
+    let (sin, cos) = libm::sincos(share * TAU);
+    Vector::new(cos, sin)
+}
+
+fn free(world: &Scenario, poses: &[Pose], position: Point<f64>) -> bool {
+    let apart = 2.0 * BODY_RADIUS + CLEARANCE;
+    let [east, north] = world.region();
+    (0.0..=east).contains(&position.x)
+        && (0.0..=north).contains(&position.y)
+        && poses.iter().all(|pose| length_squared(pose.position - position) >= apart * apart)
+        && world.walls().signed_distance(position) >= BODY_RADIUS + CLEARANCE
+}

@@ -1,0 +1,195 @@
+use super::*;
+use crate::geometry::length_squared;
+use crate::radio::RadioConfig;
+use crate::sensors::Noise;
+use grn_core::robot::epuck2::BODY_RADIUS;
+use grn_core::robot::{Command, Message, Millimetres};
+
+const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");
+
+fn channel() -> Scenario {
+    Scenario::parse(CHANNEL).unwrap()
+}
+
+/// Wanders, turns away from what it senses, and talks; remembers what it heard.
+struct Wanderer {
+    number: u8,
+    tick: u16,
+    heard: Vec<(u16, u8, i16)>,
+}
+
+impl Brain for Wanderer {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        self.heard.extend(percept.heard.iter().map(|m| (self.tick, m.sender, m.position.x)));
+        let near = percept.proximity.iter().any(|&p| p < 300);
+        let left = if near { -300 } else { 600 + i16::from(self.number) * 5 };
+        let position = Millimetres { x: self.tick as i16, y: 0 };
+        let broadcast = Message { sender: self.number, position, target: None, obstacles: Default::default() };
+        self.tick += 1;
+        Ok(Command { left, right: 600, broadcast: Some(broadcast) })
+    }
+}
+
+fn wanderer(robot: usize) -> Wanderer {
+    Wanderer { number: robot as u8, tick: 0, heard: Vec::new() }
+}
+
+/// Drives straight on.
+struct Straight;
+
+impl Brain for Straight {
+    fn tick(&mut self, _: &Percept) -> Result<Command, BrainError> {
+        Ok(Command { left: 1000, right: 1000, broadcast: None })
+    }
+}
+
+fn run(config: SwarmConfig, ticks: u64) -> Swarm<Wanderer> {
+    let mut swarm = Swarm::new(&channel(), config, wanderer).unwrap();
+    assert_eq!(swarm.run(ticks, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    swarm
+}
+
+#[test]
+fn equal_seeds_give_equal_bytes() {
+    let config = SwarmConfig { robots: 40, variation: 0.02, ..SwarmConfig::default() };
+    let bytes = |seed| run(SwarmConfig { seed, ..config.clone() }, 400).trace().encode();
+    assert_eq!(bytes(1), bytes(1));
+    assert_ne!(bytes(1), bytes(2));
+    // In two runs, through a box, the same.
+    let mut boxed: Swarm<Box<dyn Brain>> =
+        Swarm::new(&channel(), config.clone(), |robot| Box::new(wanderer(robot)) as _).unwrap();
+    assert_eq!(boxed.run(150, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(boxed.run(400, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(boxed.trace().encode(), bytes(1));
+}
+
+#[test]
+fn a_broadcast_is_heard_in_the_next_tick() {
+    let config = SwarmConfig { robots: 5, radio: RadioConfig { range_m: 10.0, loss: 0.0 }, ..SwarmConfig::default() };
+    let swarm = run(config, 10);
+    for (robot, brain) in swarm.brains().iter().enumerate() {
+        assert_eq!(brain.heard.len(), 9 * 4);
+        assert!(
+            brain
+                .heard
+                .iter()
+                .all(|&(tick, sender, sent)| i32::from(tick) == i32::from(sent) + 1 && usize::from(sender) != robot)
+        );
+    }
+}
+
+#[test]
+fn robots_start_free_and_near_the_target() {
+    for (robots, scale) in [(20, 0.25), (250, 0.25), (100, 0.1), (30, 1.0)] {
+        let config = SwarmConfig { robots, scale, ..SwarmConfig::default() };
+        let swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
+        let positions: Vec<_> = swarm.poses().iter().map(|pose| pose.position).collect();
+        for (i, &p) in positions.iter().enumerate() {
+            assert!(swarm.walls().signed_distance(p) > BODY_RADIUS);
+            assert!(positions[..i].iter().all(|&q| length_squared(p - q) > 4.0 * BODY_RADIUS * BODY_RADIUS));
+            let distance = (p - swarm.targets()[0]).length() / (2.0 * scale);
+            assert!(distance >= 0.3 && (robots > 30 || distance <= 1.6), "{distance}");
+        }
+    }
+    let full = SwarmConfig { robots: 250, scale: 0.03, ..SwarmConfig::default() };
+    assert_eq!(Swarm::new(&channel(), full, |_| Straight).unwrap_err().field, "robots");
+    let large = SwarmConfig { scale: 2.0, ..SwarmConfig::default() };
+    assert_eq!(Swarm::new(&channel(), large, |_| Straight).unwrap_err().field, "scale");
+}
+
+#[test]
+fn bodies_never_enter_walls_or_stay_inside_each_other() {
+    // In a square pen of 0.9 m, straight drivers end in its corners on top of each other.
+    let pen: String = [(0.0, 0.0, 1.1, 0.1), (0.0, 1.0, 1.1, 1.1), (0.0, 0.1, 0.1, 1.0), (1.0, 0.1, 1.1, 1.0)]
+        .iter()
+        .map(|(w, s, e, n)| format!("[[wall]]\npolygon = [[{w}, {s}], [{e}, {s}], [{e}, {n}], [{w}, {n}]]\n"))
+        .collect();
+    let text = CHANNEL
+        .split("[[target]]")
+        .next()
+        .unwrap()
+        .replace("[20.0, 20.0]", "[1.1, 1.1]")
+        .replace("d_min = 1.0", "d_min = 0.1")
+        .replace("d_max = 2.0", "d_max = 0.25");
+    let scenario = Scenario::parse(&format!("{text}[[target]]\npath = [[0.55, 0.55]]\n{pen}")).unwrap();
+    let config = SwarmConfig { robots: 20, scale: 1.0, ..SwarmConfig::default() };
+    let mut swarm = Swarm::new(&scenario, config, |_| Straight).unwrap();
+    let mut closest: f64 = 1.0;
+    for _ in 0..2000 {
+        swarm.step().unwrap();
+        for (i, pose) in swarm.poses().iter().enumerate() {
+            assert!(swarm.walls().signed_distance(pose.position) >= BODY_RADIUS - 1e-9, "{pose:?}");
+            for other in &swarm.poses()[..i] {
+                closest = closest.min((pose.position - other.position).length());
+            }
+        }
+    }
+    assert!(closest > 1.6 * BODY_RADIUS, "{closest}");
+    let contacts = swarm.trace().frames().map(|f| f.contacts);
+    let (wall_events, peer_events) =
+        contacts.fold((0, 0), |sum, c| (sum.0 + u32::from(c.wall_events), sum.1 + u32::from(c.peer_events)));
+    assert!(wall_events >= 20 && peer_events >= 10, "{wall_events} {peer_events}");
+    assert_eq!(swarm.trace().frames().last().unwrap().contacts.walls, 20, "they press on");
+}
+
+#[test]
+fn targets_rest_and_then_arrive_on_time() {
+    let config = SwarmConfig { settle_s: 2.0, target_speed_m_per_s: 0.1, ..SwarmConfig::default() };
+    let mut swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
+    // 14 m at a quarter of the scale: 3.5 m in 35 s.
+    assert_eq!(swarm.arrival_tick(), 37 * 32);
+    let mut before = swarm.targets()[0];
+    for tick in 1..=swarm.arrival_tick() {
+        swarm.step().unwrap();
+        let step = (swarm.targets()[0] - before).length();
+        let expected = if tick <= 64 { 0.0 } else { 0.1 / 32.0 };
+        assert!((step - expected).abs() < 1e-12, "{tick}: {step}");
+        before = swarm.targets()[0];
+    }
+    assert!((before.x - 17.0 * 0.25).abs() < 1e-12);
+    assert_eq!(swarm.trace().len() as u64, swarm.arrival_tick() + 1);
+}
+
+#[test]
+fn only_mothers_see_far() {
+    struct Watcher(usize, usize);
+    impl Brain for Watcher {
+        fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+            self.0 = percept.targets.len();
+            self.1 += percept.obstacles.len();
+            Ok(Command::default())
+        }
+    }
+    let config = SwarmConfig { robots: 6, mothers: 2, noise: Noise::NONE, ..SwarmConfig::default() };
+    let mut swarm = Swarm::new(&channel(), config, |_| Watcher(0, 0)).unwrap();
+    (0..4).for_each(|_| swarm.step().unwrap());
+    let seen: Vec<_> = swarm.brains().iter().map(|w| w.0).collect();
+    assert_eq!(seen, [1, 1, 0, 0, 0, 0]);
+    // The nearest corner is 5 m from the target: whether a mother sees walls depends on where it stands.
+    let range = 5.0 * 0.25;
+    for (robot, (watcher, pose)) in swarm.brains().iter().zip(swarm.poses()).enumerate() {
+        let corners = [3.5, 1.5].map(|y| (pose.position - Point::new(1.5, y)).length());
+        assert_eq!(watcher.1 > 0, robot < 2 && corners.iter().any(|&d| d <= range), "{robot}");
+    }
+}
+
+#[test]
+fn a_failing_brain_is_named_and_a_callback_may_stop() {
+    struct Failing(usize, u64);
+    impl Brain for Failing {
+        fn tick(&mut self, _: &Percept) -> Result<Command, BrainError> {
+            self.1 += 1;
+            if self.0 == 3 && self.1 == 50 { Err(BrainError::new("link closed")) } else { Ok(Command::default()) }
+        }
+    }
+    let mut swarm = Swarm::new(&channel(), SwarmConfig::default(), |robot| Failing(robot, 0)).unwrap();
+    let mut calls = Vec::new();
+    let stopped = swarm.run(100, |progress| {
+        calls.push(progress.tick);
+        if progress.tick == 32 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert_eq!((stopped, calls), (Ok(Outcome::Interrupted), vec![0, 32]));
+    let error = swarm.run(100, |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(error.to_string(), "robot 3 gave no command in tick 49: link closed");
+    assert_eq!(swarm.trace().len(), 50);
+}

@@ -19,7 +19,9 @@ fn main() {
             let mut tr = Tracer::new(&world);
             let t = std::time::Instant::now();
             for _ in 0..n {
-                for x in tr.trace_all(&m) { std::hint::black_box(x); }
+                for x in tr.trace_all(&m) {
+                    std::hint::black_box(x);
+                }
             }
             let dt2 = t.elapsed() / n;
             println!("{sc} {} {:?} {:?} trace {:?}", p.name, e, dt, dt2);

@@ -1,7 +1,8 @@
 //! What drives a robot: the controller under test, seen from the simulator.
 
 use core::fmt;
-use grn_core::robot::{Command, Percept};
+use grn_core::robot::{Command, Controller, Percept};
+use grn_core::scalar::Scalar;
 
 /// A robot's controller. The flashed controller, a scripted one for tests or one behind a link are all brains.
 pub trait Brain: Send {
@@ -15,6 +16,13 @@ pub trait Brain: Send {
 impl<B: Brain + ?Sized> Brain for Box<B> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         (**self).tick(percept)
+    }
+}
+
+/// The robot's own controller, unchanged.
+impl<S: Scalar, const N: usize> Brain for Controller<S, N> {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        Ok(Controller::tick(self, percept))
     }
 }
 

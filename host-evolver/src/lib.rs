@@ -1,9 +1,16 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+pub mod cli;
+pub mod deploy;
+pub mod describe;
 pub mod evolve;
+pub mod figures;
+pub mod files;
 pub mod objective;
 pub mod published;
 pub mod report;
+pub mod run;
 pub mod search;
+pub mod simulation;
 pub mod tree;
 pub mod variation;

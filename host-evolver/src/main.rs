@@ -1,2 +1,7 @@
-//! Skeleton.
-fn main() {}
+//! The command `grn`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    host_evolver::cli::run()
+}

@@ -95,6 +95,12 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         })
     }
 
+    /// The same controller for another robot of the swarm, which saves loading the blob once more.
+    #[must_use]
+    pub fn on_robot(self, robot: u8) -> Self {
+        Controller { robot, ..self }
+    }
+
     /// The identity of the blob that runs.
     pub fn identity(&self) -> Identity {
         self.identity

@@ -40,10 +40,16 @@ pub struct World {
 impl World {
     /// Prepares a scenario: a few hundredths of a second.
     pub fn new(scenario: Scenario) -> World {
+        let moments = scenario.snapshot_targets();
+        World::at(scenario, moments)
+    }
+
+    /// The same for other moments than the scenario's snapshots: where the targets are at each, metres.
+    pub fn at(scenario: Scenario, moments: Vec<Vec<Point<f64>>>) -> World {
         let morphogen = scenario.morphogen();
         let field = Field::new(morphogen.kernel, morphogen.target_width, morphogen.obstacle_width);
         let lattice = Lattice::over(scenario.region(), LATTICE_STEP);
-        let snapshots = scenario.snapshot_targets().into_iter().map(|targets| Snapshot {
+        let snapshots = moments.into_iter().map(|targets| Snapshot {
             x1: lattice.nodes().map(|node| x1_at(&field, &targets, lattice.point(node))).collect(),
             obstacle_points: scenario.obstacle_points(&targets),
             targets,

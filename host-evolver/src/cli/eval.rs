@@ -1,0 +1,62 @@
+//! `grn eval`.
+
+use super::{Answer, Failure, about, print};
+use crate::files::read_blob;
+use clap::ValueEnum;
+use grn_core::blob::Blob;
+use grn_core::network::Network;
+use grn_core::scalar::{Q8_24, Scalar};
+use std::io::BufRead;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The controller.
+    blob: PathBuf,
+    /// Number type to compute in.
+    #[arg(long, default_value = "f64")]
+    number: EvalNumber,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum EvalNumber {
+    #[value(name = "f64")]
+    F64,
+    #[value(name = "f32")]
+    F32,
+    #[value(name = "q8.24")]
+    Q824,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    let blob = read_blob(&arguments.blob)?;
+    let evaluate = evaluator(&blob, arguments.number);
+    for (index, line) in std::io::stdin().lock().lines().enumerate() {
+        let line = line.map_err(about("standard input"))?;
+        let [x1, x2] = parse(&line).ok_or_else(|| {
+            let place = format!("standard input, line {}", index + 1);
+            Failure::Input(format!("{place}: {line:?} is not two finite numbers like 0.5,0.25"))
+        })?;
+        print(evaluate(x1, x2))?;
+    }
+    Ok(Answer::Yes)
+}
+
+fn parse(line: &str) -> Option<[f64; 2]> {
+    let (x1, x2) = line.split_once(',')?;
+    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    Some([number(x1)?, number(x2)?])
+}
+
+fn evaluator(blob: &Blob, number: EvalNumber) -> Box<dyn Fn(f64, f64) -> String> {
+    fn steady<S: Scalar>(network: &Network<S>, x1: f64, x2: f64) -> S {
+        network.steady_state(S::from_f64(x1), S::from_f64(x2))
+    }
+    let (in_f64, in_f32, in_q824) =
+        (blob.network.cast::<f64>(), blob.network.cast::<f32>(), blob.network.cast::<Q8_24>());
+    match number {
+        EvalNumber::F64 => Box::new(move |x1, x2| steady(&in_f64, x1, x2).to_string()),
+        EvalNumber::F32 => Box::new(move |x1, x2| steady(&in_f32, x1, x2).to_string()),
+        EvalNumber::Q824 => Box::new(move |x1, x2| steady(&in_q824, x1, x2).to_f64().to_string()),
+    }
+}

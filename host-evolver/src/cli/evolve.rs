@@ -1,0 +1,184 @@
+//! `grn evolve`.
+
+use super::simulate::{DEFAULT_ROBOTS, table, usual_config, watched, write_folder};
+use super::{Answer, Failure, about, interrupt, print};
+use crate::deploy::DEFAULT_SCALE;
+use crate::evolve::{Advance, FrontMember, Search, Settings};
+use crate::objective::World;
+use crate::run::{Manifest, RunFolder};
+use crate::simulation::Number;
+use crate::variation::MotifSet;
+use clap::ValueEnum;
+use firmware_sim::scenario::Scenario;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The world to evolve for.
+    scenario: PathBuf,
+    /// Seed of everything random; equal seeds give equal fronts.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads to work with; the result does not depend on it [default: all cores].
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+    /// Budget: evaluations of f2.
+    #[arg(long, default_value_t = Settings::default().evaluations)]
+    evaluations: usize,
+    /// Motifs to build with: all ten, or the eight with two inputs.
+    #[arg(long, default_value = "all")]
+    motifs: Motifs,
+    /// World metres per scenario metre of the blobs.
+    #[arg(long, default_value_t = DEFAULT_SCALE)]
+    scale: f32,
+    /// Folder of the run [default: runs/SCENARIO-seed-N, or the next free name].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Continue the run in the folder.
+    #[arg(long)]
+    resume: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Motifs {
+    All,
+    Binary,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    let scenario = Scenario::load(&arguments.scenario)?;
+    let settings = Settings {
+        seed: arguments.seed,
+        evaluations: arguments.evaluations,
+        motifs: match arguments.motifs {
+            Motifs::All => MotifSet::All,
+            Motifs::Binary => MotifSet::Binary,
+        },
+        ..Settings::default()
+    };
+    if !(0.01..=10.0).contains(&arguments.scale) {
+        return Err(Failure::Input(format!("--scale {}: a number from 0.01 to 10 is needed", arguments.scale)));
+    }
+    let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale);
+    let folder = folder(arguments, scenario.name());
+    // Settings are checked before anything is written.
+    let world = World::new(scenario.clone());
+    Search::new(&world, settings.clone(), None).map_err(about("--evaluations"))?;
+    let (run, state) = if arguments.resume {
+        RunFolder::resume(&folder, &manifest, &scenario)?
+    } else {
+        (RunFolder::create(&folder, &manifest, &scenario)?, None)
+    };
+    let mut search = Search::new(&world, settings, state)?;
+    let stop = interrupt::watch()?;
+    search_on(&mut search, &run, arguments.threads, stop, &folder)?;
+    let knee = run.finish(&search, &world, arguments.scale)?;
+    let front = search.front();
+    print(front_table(&front))?;
+    print(format!("\nresults in {}\n", folder.display()))?;
+    if front.iter().any(|member| !member.individual.is_feasible()) {
+        print("infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations")?;
+        return Ok(Answer::No);
+    }
+    let config = usual_config(&knee, DEFAULT_ROBOTS);
+    let robots = config.robots;
+    let simulation = watched(&knee, &scenario, config, Number::F32, stop)?;
+    write_folder(&run.path("simulation"), &simulation, &scenario, &knee)?;
+    print(format!("the knee on {robots} simulated robots (simulation/trace.svg):"))?;
+    print(table(&simulation))?;
+    Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
+}
+
+/// The folder asked for, else the first of runs/NAME-seed-N, runs/NAME-seed-N-2, … that is free, or that is to be resumed.
+fn folder(arguments: &Arguments, name: &str) -> PathBuf {
+    if let Some(out) = &arguments.out {
+        return out.clone();
+    }
+    let first = Path::new("runs").join(format!("{name}-seed-{}", arguments.seed));
+    let mut folder = first.clone();
+    let mut number = 1;
+    while folder.exists() && !arguments.resume {
+        number += 1;
+        folder = PathBuf::from(format!("{}-{number}", first.display()));
+    }
+    folder
+}
+
+fn search_on(
+    search: &mut Search<'_>,
+    run: &RunFolder,
+    threads: Option<NonZeroUsize>,
+    stop: &AtomicBool,
+    folder: &Path,
+) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build()?;
+    let style = ProgressStyle::with_template("evolving {bar:40} {pos}/{len} evaluations · {msg} · {eta} left");
+    let bar = ProgressBar::new(search.settings().evaluations as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let each = search.settings().evaluations_each() as u64;
+    let best = Mutex::new(search.state().history.last().and_then(|milestone| milestone.best_f2));
+    bar.set_message(best_text(*best.lock().unwrap_or_else(|poisoned| poisoned.into_inner())));
+    loop {
+        bar.set_position(search.state().evaluations as u64);
+        let advance = pool.install(|| {
+            search.advance(stop, &|individual| {
+                bar.inc(each);
+                let mut best = best.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                if individual.is_feasible() && best.is_none_or(|best| individual.f2 < best) {
+                    *best = Some(individual.f2);
+                    bar.set_message(best_text(*best));
+                }
+            })
+        });
+        match advance {
+            Advance::Generation => {
+                run.save(search.state())?;
+                if bar.is_hidden() {
+                    let best = search.state().history.last().and_then(|milestone| milestone.best_f2);
+                    eprintln!(
+                        "generation {}: {} evaluations, {}",
+                        search.state().generation,
+                        search.state().evaluations,
+                        best_text(best)
+                    );
+                }
+            }
+            Advance::Finished => {
+                bar.finish_and_clear();
+                return Ok(());
+            }
+            Advance::Interrupted => {
+                bar.abandon();
+                let way_on = format!(
+                    "{} evaluations are kept; go on with the same command and --resume --out {}",
+                    search.state().evaluations,
+                    folder.display()
+                );
+                return Err(Failure::Interrupted(way_on));
+            }
+        }
+    }
+}
+
+fn best_text(best: Option<f64>) -> String {
+    best.map_or("nothing feasible yet".into(), |f2| format!("best f2 {f2:.5}"))
+}
+
+fn front_table(front: &[FrontMember]) -> String {
+    let mut text = format!("{:>5}  {:<9}{:<15}{}", "nodes", "f2", "knee", "expression");
+    for member in front {
+        let individual = &member.individual;
+        text += &format!(
+            "\n{:>5}  {:<9.5}{:<15}{}",
+            individual.tree.size(),
+            individual.f2,
+            member.knee.to_string(),
+            individual.tree
+        );
+    }
+    text
+}

@@ -1,0 +1,200 @@
+//! From models, worlds and runs to the plain data that figures are drawn from.
+
+use crate::evolve::{FrontMember, Individual, Knee};
+use crate::objective::{Contours, Model, Snapshot, Tracer, World};
+use crate::report::{self, FigureError, KneeKind, Window};
+use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
+use firmware_sim::geometry::Bounds;
+use firmware_sim::metrics::largest_gap;
+use firmware_sim::scenario::{Ring, Scenario};
+use firmware_sim::trace::{Frame, metres};
+use grn_core::blob::Blob;
+use grn_core::geometry::Point;
+use grn_core::robot::epuck2::BODY_RADIUS;
+
+fn pair(point: Point<f64>) -> [f64; 2] {
+    [point.x, point.y]
+}
+
+fn pairs(points: &[Point<f64>]) -> Vec<[f64; 2]> {
+    points.iter().copied().map(pair).collect()
+}
+
+fn walls(scenario: &Scenario) -> Vec<Vec<[f64; 2]>> {
+    scenario.walls().polygons().iter().map(|polygon| pairs(polygon.vertices())).collect()
+}
+
+fn paths(scenario: &Scenario) -> Vec<Vec<[f64; 2]>> {
+    scenario.paths().iter().map(|path| pairs(path.points())).collect()
+}
+
+/// f2 of a circle midway between d_min and d_max around one target, far from every wall: 2 / (1 + e^(k (d_max - d_min) / 2)).
+pub fn perfect_circle(ring: &Ring) -> f64 {
+    2.0 / (1.0 + libm::exp(ring.steepness * (ring.d_max - ring.d_min) / 2.0))
+}
+
+/// The Pareto front among the last population, knees named.
+///
+/// # Errors
+/// An empty front.
+pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> Result<String, FigureError> {
+    let point = |individual: &Individual, knee: Option<KneeKind>| report::ParetoPoint {
+        nodes: individual.tree.size() as u32,
+        f2: individual.f2,
+        feasible: individual.is_feasible(),
+        knee,
+        label: short_expression(individual),
+    };
+    let is_member = |individual: &&Individual| front.iter().any(|member| member.individual == **individual);
+    let members = front.iter().map(|member| point(&member.individual, knee_kind(member)));
+    let others = population.iter().filter(|individual| !is_member(individual)).map(|other| point(other, None));
+    let points: Vec<_> = members.chain(others).collect();
+    let best = perfect_circle(ring);
+    let reference = report::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
+    report::pareto(&points, "", Some(&reference))
+}
+
+fn knee_kind(member: &FrontMember) -> Option<KneeKind> {
+    let Knee { angle, utility } = member.knee;
+    match (angle && member.individual.is_feasible(), utility && member.individual.is_feasible()) {
+        (true, true) => Some(KneeKind::Both),
+        (true, false) => Some(KneeKind::Angle),
+        (false, true) => Some(KneeKind::Utility),
+        (false, false) => None,
+    }
+}
+
+/// The expression without θ and in function notation: `XNOR(NAND(x1, x1), x2)`.
+fn short_expression(individual: &Individual) -> String {
+    let Ok(network) = individual.tree.network(1.0) else { return individual.tree.to_string() };
+    fn write(tree: &report::SyntaxTree) -> String {
+        let operands: Vec<String> = tree.children.iter().map(write).collect();
+        if operands.is_empty() { tree.label.clone() } else { format!("{}({})", tree.label, operands.join(", ")) }
+    }
+    write(&crate::describe::syntax_tree(&network))
+}
+
+/// The pattern at each snapshot.
+///
+/// # Errors
+/// A scenario with more snapshots than a page holds.
+pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
+    const MOST_PANELS: usize = 25;
+    let scenario = world.scenario();
+    let mut tracer = Tracer::with_leaks(world);
+    let stride = scenario.snapshots().div_ceil(MOST_PANELS);
+    let panel = |(index, (snapshot, contours)): (usize, (&Snapshot, Contours))| report::Panel {
+        title: format!("snapshot {index}"),
+        window: None,
+        walls: walls(scenario),
+        targets: snapshot
+            .targets
+            .iter()
+            .zip(&contours.enclosed)
+            .map(|(&target, &enclosed)| report::Target { position: pair(target), enclosed })
+            .collect(),
+        contours: contours.rings.iter().map(|ring| pairs(ring)).collect(),
+        leak_outlines: contours.leaks.iter().map(|outline| pairs(outline)).collect(),
+        candidates: Vec::new(),
+    };
+    let panels = tracer.trace_all(model).enumerate().step_by(stride).map(panel).collect();
+    let [width, height] = scenario.region();
+    let region = Window { min: [0.0, 0.0], max: [width, height] };
+    report::pattern(&report::PatternFigure { region, paths: paths(scenario), panels, columns: None })
+}
+
+/// How many moments of a run are drawn with robots and pattern.
+const INSTANTS: usize = 5;
+/// How many points the time series and trajectories have at most.
+const SAMPLES: usize = 600;
+
+/// A run of the swarm: where the robots went, and how well they held the pattern.
+///
+/// # Errors
+/// A run too short to draw.
+pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<String, FigureError> {
+    let scale = f64::from(blob.scale);
+    let frames: Vec<Frame<'_>> = simulation.trace.frames().collect();
+    let per_second = f64::from(simulation.trace.header().ticks_per_second);
+    let stride = frames.len().div_ceil(SAMPLES).max(1);
+    let sampled: Vec<(f64, &Frame<'_>)> =
+        frames.iter().enumerate().step_by(stride).map(|(tick, frame)| (tick as f64 / per_second, frame)).collect();
+    let robots = frames.first().map_or(0, |frame| frame.robots.len());
+    let trajectory =
+        |robot: usize| sampled.iter().map(|(_, frame)| pair(metres(frame.robots[robot].position_um))).collect();
+    let trajectories: Vec<Vec<[f64; 2]>> = (0..robots).map(trajectory).collect();
+    let world = scenario.scaled(scale);
+    let window = window_around(trajectories.iter().flatten().copied(), 3.0 * BODY_RADIUS);
+    let ruler = PatternRuler::new(blob, scenario).ok();
+    report::trace(&report::TraceFigure {
+        window,
+        walls: walls(&world),
+        target_paths: paths(&world),
+        trajectories,
+        body_radius: BODY_RADIUS,
+        instants: instants(&frames, per_second, scenario, blob),
+        times: sampled.iter().map(|(time, _)| *time).collect(),
+        gaps: gaps(&sampled, scenario.paths().len()),
+        radial_error: sampled.iter().map(|(_, frame)| median_error(frame, ruler.as_ref())).collect(),
+        radial_band: ENOUGH_ACCURACY * simulation.ring_radius_m,
+    })
+}
+
+fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: f64) -> Window {
+    let bounds = Bounds::around(points.map(|[x, y]| Point::new(x, y)));
+    let (low, high) = bounds.map_or(([0.0; 2], [1.0; 2]), |bounds| (pair(bounds.low), pair(bounds.high)));
+    Window { min: low.map(|edge| edge - margin), max: high.map(|edge| edge + margin) }
+}
+
+fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<f64>> {
+    let mut bearings = Vec::new();
+    let mut gap = |frame: &Frame<'_>, target: usize| {
+        let robots = frame.robots.iter().map(|robot| metres(robot.position_um));
+        largest_gap(metres(frame.targets_um[target]), robots, &mut bearings).to_degrees()
+    };
+    (0..targets).map(|target| sampled.iter().map(|(_, frame)| gap(frame, target)).collect()).collect()
+}
+
+fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> f64 {
+    let targets: Vec<_> = frame.targets_um.iter().map(|&target| metres(target)).collect();
+    let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets));
+    let mut errors: Vec<f64> = frame.robots.iter().filter_map(|robot| distance(robot.position_um)).collect();
+    errors.sort_by(f64::total_cmp);
+    errors.get(errors.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<report::Instant> {
+    let ticks: Vec<usize> = (0..INSTANTS).map(|i| i * frames.len().saturating_sub(1) / (INSTANTS - 1)).collect();
+    let scale = f64::from(blob.scale);
+    let unscaled = |target: &[i32; 2]| {
+        let point = metres(*target);
+        Point::new(point.x / scale, point.y / scale)
+    };
+    let moments = ticks.iter().map(|&tick| frames[tick].targets_um.iter().map(unscaled).collect()).collect();
+    let world = World::at(scenario.clone(), moments);
+    let model = Model::new(&blob.network, f64::from(blob.level_fraction)).ok();
+    let mut tracer = Tracer::new(&world);
+    let rings: Vec<Contours> = model
+        .iter()
+        .flat_map(|model| tracer.trace_all(model).map(|(_, contours)| contours).collect::<Vec<_>>())
+        .collect();
+    let scaled = |ring: &Vec<Point<f64>>| ring.iter().map(|point| [point.x * scale, point.y * scale]).collect();
+    let instant = |(place, &tick): (usize, &usize)| report::Instant {
+        time: tick as f64 / per_second,
+        robots: frames[tick]
+            .robots
+            .iter()
+            .map(|robot| report::Pose {
+                position: pair(metres(robot.position_um)),
+                heading: heading(robot.heading_q14),
+            })
+            .collect(),
+        targets: frames[tick].targets_um.iter().map(|&target| pair(metres(target))).collect(),
+        contours: rings.get(place).map(|contours| contours.rings.iter().map(scaled).collect()).unwrap_or_default(),
+    };
+    ticks.iter().enumerate().map(instant).collect()
+}
+
+fn heading([cos, sin]: [i16; 2]) -> f64 {
+    libm::atan2(f64::from(sin), f64::from(cos))
+}

@@ -1,0 +1,243 @@
+//! The folder of an evolution run: manifest, checkpoint, results.
+//!
+//! Everything in it is written whole or not at all and depends only on scenario and settings, so an interrupted and
+//! resumed run leaves the same bytes as one left alone.
+
+use crate::deploy;
+use crate::describe;
+use crate::evolve::{FrontMember, Search, Settings, State};
+use crate::figures;
+use crate::files::{self, FileError, blob_bytes};
+use crate::objective::{Model, World};
+use crate::report;
+use firmware_sim::scenario::Scenario;
+use grn_core::blob::{Blob, FORMAT_VERSION};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+const MANIFEST: &str = "manifest.json";
+const CHECKPOINT: &str = "checkpoint.json";
+
+/// What a run was made from; equal manifests give equal results.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Version of this software.
+    pub grn: String,
+    /// Blob format version.
+    pub blob_format: u8,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// SHA-256 of the scenario's canonical text, hexadecimal; the text lies beside the manifest.
+    pub scenario_sha256: String,
+    /// Settings of the search, seed included.
+    pub settings: Settings,
+    /// World metres per model metre of the blobs.
+    pub scale: f32,
+}
+
+impl Manifest {
+    /// The manifest of a run by this software.
+    pub fn new(scenario: &Scenario, settings: Settings, scale: f32) -> Self {
+        use sha2::Digest;
+        let digest = sha2::Sha256::digest(scenario.to_toml().as_bytes());
+        Manifest {
+            grn: env!("CARGO_PKG_VERSION").into(),
+            blob_format: FORMAT_VERSION,
+            scenario: scenario.name().into(),
+            scenario_sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            settings,
+            scale,
+        }
+    }
+
+    /// The first difference to another manifest, in words.
+    fn difference(&self, other: &Manifest) -> Option<String> {
+        let (ours, theirs) = (serde_json::to_value(self).ok()?, serde_json::to_value(other).ok()?);
+        first_difference("", &ours, &theirs)
+    }
+}
+
+fn first_difference(place: &str, ours: &serde_json::Value, theirs: &serde_json::Value) -> Option<String> {
+    match (ours.as_object(), theirs.as_object()) {
+        (Some(a), Some(b)) => a.iter().find_map(|(key, value)| {
+            let other = b.get(key).unwrap_or(&serde_json::Value::Null);
+            first_difference(&format!("{place}{}{key}", if place.is_empty() { "" } else { "." }), value, other)
+        }),
+        _ if ours == theirs => None,
+        _ => Some(format!("{place} is {theirs} there and {ours} now")),
+    }
+}
+
+/// Why a run folder cannot be used or filled.
+#[derive(Debug)]
+pub enum RunError {
+    /// A file in it.
+    File(FileError),
+    /// A picture could not be drawn.
+    Figure(&'static str, report::FigureError),
+}
+
+impl fmt::Display for RunError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RunError::File(error) => error.fmt(f),
+            RunError::Figure(name, error) => write!(f, "{name} cannot be drawn: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+impl From<FileError> for RunError {
+    fn from(error: FileError) -> Self {
+        RunError::File(error)
+    }
+}
+
+/// The folder of one run.
+pub struct RunFolder {
+    folder: PathBuf,
+}
+
+impl RunFolder {
+    /// Begins a run in a new or empty folder.
+    ///
+    /// # Errors
+    /// A folder that holds a run already, or cannot be written.
+    pub fn create(folder: &Path, manifest: &Manifest, scenario: &Scenario) -> Result<Self, RunError> {
+        let run = RunFolder { folder: folder.to_owned() };
+        let path = run.path(MANIFEST);
+        if path.exists() {
+            let way_out = "a run is here already; continue it with --resume, or choose another folder with --out";
+            return Err(FileError::new(path, way_out).into());
+        }
+        files::write(&run.path("scenario.toml"), scenario.to_toml())?;
+        files::write(&path, json(manifest))?;
+        Ok(run)
+    }
+
+    /// Continues a run, or begins it if the folder does not hold one yet. The state is `None` before the first
+    /// checkpoint.
+    ///
+    /// # Errors
+    /// A run made with another scenario, other settings or another version, or damaged files.
+    pub fn resume(folder: &Path, manifest: &Manifest, scenario: &Scenario) -> Result<(Self, Option<State>), RunError> {
+        let run = RunFolder { folder: folder.to_owned() };
+        let path = run.path(MANIFEST);
+        if !path.exists() {
+            return Ok((RunFolder::create(folder, manifest, scenario)?, None));
+        }
+        let found: Manifest = read_json(&path)?;
+        if let Some(difference) = manifest.difference(&found) {
+            let way_out = "give the same settings to --resume, or choose another folder with --out";
+            return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")).into());
+        }
+        let checkpoint = run.path(CHECKPOINT);
+        let state = if checkpoint.exists() { Some(read_json(&checkpoint)?) } else { None };
+        Ok((run, state))
+    }
+
+    /// The path of something in the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Saves the state after a generation.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn save(&self, state: &State) -> Result<(), RunError> {
+        Ok(files::write(&self.path(CHECKPOINT), json(state))?)
+    }
+
+    /// Writes front, blobs and pictures; returns the blob of the knee that is deployed.
+    ///
+    /// # Errors
+    /// A file that cannot be written or a picture that cannot be drawn.
+    pub fn finish(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Blob, RunError> {
+        let front = search.front();
+        let steepness = search.settings().steepness;
+        let blob_of = |member: &FrontMember| -> Result<Blob, FileError> {
+            let network = member.individual.tree.network(steepness);
+            let network = network.map_err(|error| FileError::new(self.path("front.csv"), error))?;
+            Ok(deploy::blob(network, &world.scenario().morphogen(), scale))
+        };
+        let mut rows = Vec::new();
+        let mut knee = None;
+        for (place, member) in front.iter().enumerate() {
+            let blob = blob_of(member)?;
+            let name = format!("front/{place:02}-{}-nodes.grn", member.individual.tree.size());
+            let path = self.path(&name);
+            files::write(&path, blob_bytes(&blob).map_err(|error| FileError::new(&path, error))?)?;
+            if member.knee.utility || knee.is_none() {
+                knee = Some(blob);
+            }
+            rows.push((member, name));
+        }
+        files::write(&self.path("front.csv"), front_csv(&rows))?;
+        files::write(&self.path("history.csv"), history_csv(search.state()))?;
+        let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
+        let path = self.path("knee.grn");
+        files::write(&path, blob_bytes(&knee).map_err(|error| FileError::new(&path, error))?)?;
+        self.draw("pareto.svg", figures::pareto(&front, &search.state().population, &world.scenario().ring()))?;
+        self.draw("tree.svg", report::tree(&describe::syntax_tree(&knee.network)))?;
+        self.draw("grn.svg", report::grn(&describe::graph(&knee.network)))?;
+        if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
+            self.draw("pattern.svg", figures::pattern(world, &model))?;
+        }
+        Ok(knee)
+    }
+
+    /// Writes a picture.
+    ///
+    /// # Errors
+    /// A picture that could not be drawn or written.
+    pub fn draw(&self, name: &'static str, figure: Result<String, report::FigureError>) -> Result<(), RunError> {
+        let svg = figure.map_err(|error| RunError::Figure(name, error))?;
+        Ok(files::write(&self.path(name), svg)?)
+    }
+}
+
+fn json(value: &impl Serialize) -> String {
+    // Plain structures of numbers and text always have a JSON form.
+    serde_json::to_string_pretty(value).map(|text| text + "\n").unwrap_or_default()
+}
+
+fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+    let damaged = |error: serde_json::Error| {
+        FileError::new(path, format!("damaged: {error}; delete the folder or choose another with --out"))
+    };
+    serde_json::from_str(&files::read_text(path)?).map_err(damaged)
+}
+
+fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let header = ["nodes", "f2", "violation", "knee", "expression", "blob"].map(String::from);
+    let lines = rows.iter().map(|(member, blob)| {
+        let individual = &member.individual;
+        [
+            individual.tree.size().to_string(),
+            individual.f2.to_string(),
+            individual.violation.to_string(),
+            member.knee.to_string(),
+            individual.tree.to_string(),
+            blob.clone(),
+        ]
+    });
+    for line in std::iter::once(header).chain(lines) {
+        // Writing to memory cannot fail.
+        let _ = csv.write_record(&line);
+    }
+    csv.into_inner().unwrap_or_default()
+}
+
+fn history_csv(state: &State) -> String {
+    let mut text = String::from("evaluations,best_f2,feasible,front\n");
+    for milestone in &state.history {
+        let best = milestone.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
+        text += &format!("{},{best},{},{}\n", milestone.evaluations, milestone.feasible, milestone.front);
+    }
+    text
+}

@@ -1,0 +1,183 @@
+//! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
+
+use crate::objective::Model;
+use firmware_sim::config::{ConfigError, SwarmConfig};
+use firmware_sim::metrics::{Metrics, MetricsOptions};
+use firmware_sim::scenario::Scenario;
+use firmware_sim::swarm::{Outcome, Swarm};
+use firmware_sim::trace::Trace;
+use grn_core::blob::Blob;
+use grn_core::geometry::{Point, Vector};
+use grn_core::pattern::NoPattern;
+use grn_core::robot::{Controller, LoadError};
+use grn_core::scalar::{Q8_24, Scalar};
+use serde::Serialize;
+use std::fmt;
+use std::ops::ControlFlow;
+
+/// Share of the time after forming during which every target must be encircled.
+pub const ENOUGH_ENCIRCLED: f64 = 0.98;
+/// Largest median radial error, as a share of the ring's radius.
+pub const ENOUGH_ACCURACY: f64 = 0.10;
+
+/// The number type robots compute with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
+pub enum Number {
+    /// Single precision.
+    #[value(name = "f32")]
+    #[serde(rename = "f32")]
+    F32,
+    /// Fixed point, for robots without a floating-point unit.
+    #[value(name = "q8.24")]
+    #[serde(rename = "q8.24")]
+    Q824,
+}
+
+/// Why there was no simulation.
+#[derive(Debug)]
+pub enum SimulationError {
+    /// The blob cannot drive a robot.
+    Load(LoadError),
+    /// The blob's pattern vanishes in double precision.
+    NoPattern(NoPattern),
+    /// The swarm cannot be set up.
+    Config(ConfigError),
+    /// A robot's brain failed.
+    Brain(String),
+}
+
+impl fmt::Display for SimulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SimulationError::Load(error) => error.fmt(f),
+            SimulationError::NoPattern(error) => error.fmt(f),
+            SimulationError::Config(error) => error.fmt(f),
+            SimulationError::Brain(error) => f.write_str(error),
+        }
+    }
+}
+
+impl std::error::Error for SimulationError {}
+
+/// A finished run.
+pub struct Simulation {
+    /// Every tick of it.
+    pub trace: Trace,
+    /// What it was worth.
+    pub metrics: Metrics,
+    /// Radius of the model's ring around a lone target in free space, world metres.
+    pub ring_radius_m: f64,
+}
+
+/// Whether a run met each of the bars for a working controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Verdict {
+    /// Every target encircled at least [`ENOUGH_ENCIRCLED`] of the time after forming.
+    pub encircled: bool,
+    /// Median radial error below [`ENOUGH_ACCURACY`] of the ring's radius.
+    pub accurate: bool,
+    /// No wall was touched.
+    pub clear_of_walls: bool,
+}
+
+impl Verdict {
+    /// All of it.
+    pub fn works(self) -> bool {
+        self.encircled && self.accurate && self.clear_of_walls
+    }
+}
+
+impl Simulation {
+    /// Median radial error as a share of the ring's radius; `None` if the swarm never formed.
+    pub fn radial_error_share(&self) -> Option<f64> {
+        self.metrics.radial_error_median_m.map(|error| error / self.ring_radius_m)
+    }
+
+    /// Whether the controller works.
+    pub fn verdict(&self) -> Verdict {
+        Verdict {
+            encircled: self.metrics.encircled_share.is_some_and(|share| share >= ENOUGH_ENCIRCLED),
+            accurate: self.radial_error_share().is_some_and(|share| share < ENOUGH_ACCURACY),
+            clear_of_walls: self.metrics.wall_contacts == 0,
+        }
+    }
+}
+
+/// Runs `blob` on every robot until all targets have arrived. `watch` is called once a simulated second with the share
+/// done and may stop the run.
+///
+/// # Errors
+/// [`SimulationError`]; `Ok(None)` if `watch` stopped it.
+pub fn simulate(
+    blob: &Blob,
+    scenario: &Scenario,
+    config: SwarmConfig,
+    number: Number,
+    watch: impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<Simulation>, SimulationError> {
+    match number {
+        Number::F32 => simulate_in::<f32>(blob, scenario, config, watch),
+        Number::Q824 => simulate_in::<Q8_24>(blob, scenario, config, watch),
+    }
+}
+
+fn simulate_in<S: Scalar>(
+    blob: &Blob,
+    scenario: &Scenario,
+    config: SwarmConfig,
+    mut watch: impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<Simulation>, SimulationError> {
+    let ruler = PatternRuler::new(blob, scenario).map_err(SimulationError::NoPattern)?;
+    let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
+    let brain = |robot: usize| fresh.clone().on_robot(robot as u8);
+    let mut swarm = Swarm::new(scenario, config, brain).map_err(SimulationError::Config)?;
+    let end = swarm.arrival_tick();
+    let outcome = swarm.run(end, |progress| watch(progress.tick as f64 / progress.end.max(1) as f64));
+    match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
+        Outcome::Interrupted => return Ok(None),
+        Outcome::Finished => {}
+    }
+    let walls = swarm.walls().clone();
+    let trace = swarm.into_trace();
+    let distance = |robot, targets: &[Point<f64>]| ruler.distance(robot, targets);
+    let metrics = Metrics::of(&trace, &walls, &MetricsOptions::default(), distance);
+    Ok(Some(Simulation { trace, metrics, ring_radius_m: ruler.ring_radius() }))
+}
+
+/// Measures how far a position in the world is from the pattern of the exact model.
+pub struct PatternRuler<'s> {
+    model: Model,
+    field: grn_core::field::Field<f64>,
+    scenario: &'s Scenario,
+    scale: f64,
+}
+
+impl<'s> PatternRuler<'s> {
+    /// The ruler of a blob in a scenario.
+    ///
+    /// # Errors
+    /// [`NoPattern`] if the blob's network has none.
+    pub fn new(blob: &Blob, scenario: &'s Scenario) -> Result<Self, NoPattern> {
+        let model = Model::new(&blob.network, f64::from(blob.level_fraction))?;
+        Ok(PatternRuler { model, field: blob.field.field(1.0), scenario, scale: f64::from(blob.scale) })
+    }
+
+    /// Radius of the ring around a lone target in free space, world metres; infinite if it does not close.
+    pub fn ring_radius(&self) -> f64 {
+        let radius = self.model.pattern().free_space_radius(self.model.network(), &self.field);
+        radius.map_or(f64::INFINITY, |radius| radius * self.scale)
+    }
+
+    /// Distance from `robot` to the nearest candidate point, all in world metres; `None` where the pattern cannot be
+    /// sensed.
+    pub fn distance(&self, robot: Point<f64>, targets: &[Point<f64>]) -> Option<f64> {
+        let unscaled = |point: Point<f64>| Vector::new(point.x / self.scale, point.y / self.scale);
+        let start = unscaled(robot);
+        let targets: Vec<_> = targets.iter().map(|&target| unscaled(target)).collect();
+        let pattern = self.model.pattern();
+        let longest = self.field.target_width() / 4.0;
+        let walls = self.scenario.walls();
+        let found = pattern.nearest_candidate(self.model.network(), &self.field, &targets, walls, start, longest)?;
+        Some((found.point - start).length() * self.scale)
+    }
+}

@@ -1,2 +1,83 @@
-//! Skeleton.
-fn main() {}
+//! What a person would otherwise type by hand. `cargo xtask` without arguments says what there is.
+
+mod tally;
+
+use std::env;
+use std::process::{Command, ExitCode};
+use tally::Tally;
+
+const HELP: &str = "cargo xtask TASK
+
+  test   build everything and run all tests; ends with a line that counts them
+  bench  run the benchmarks (criterion); figures on standard output
+  bless  write the golden files anew: models/*.grn (look at the difference before you commit)
+  fuzz   feed the blob decoder 10 million mutated inputs, then 10 million of libFuzzer's
+         (the second part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
+";
+
+fn main() -> ExitCode {
+    let task = env::args().nth(1).unwrap_or_default();
+    let done = match task.as_str() {
+        "test" => test(),
+        "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
+        "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
+        "fuzz" => fuzz(),
+        "" | "help" | "--help" | "-h" => {
+            print!("{HELP}");
+            true
+        }
+        other => {
+            eprintln!("no task {other:?}\n\n{HELP}");
+            return ExitCode::from(2);
+        }
+    };
+    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn this_cargo() -> Command {
+    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Runs cargo with its output shown; whether it succeeded.
+fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> bool {
+    println!("cargo {}", arguments.join(" "));
+    let status = this_cargo().args(arguments).envs(variables.iter().copied()).status();
+    status.inspect_err(|error| eprintln!("cargo cannot be run: {error}")).is_ok_and(|status| status.success())
+}
+
+/// All tests of the workspace; no test is left out but those marked ignored, which are counted as skipped.
+fn test() -> bool {
+    let mut tally = Tally::default();
+    let runs = [
+        vec!["test", "--workspace", "--no-fail-fast"],
+        // The same core with the other sigmoid, which only the core's own tests are about.
+        vec!["test", "--package", "grn-core", "--features", "micromath", "--no-fail-fast"],
+    ];
+    let succeeded = runs.map(|arguments| {
+        println!("cargo {}", arguments.join(" "));
+        tally.follow(this_cargo().args(&arguments))
+    });
+    let all = succeeded.into_iter().all(|success| success);
+    println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed.max(usize::from(!all)), tally.ignored);
+    all && tally.failed == 0 && tally.passed > 0
+}
+
+fn fuzz() -> bool {
+    const INPUTS: &str = "10000000";
+    let mutated = cargo(
+        &["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"],
+        &[("GRN_FUZZ_INPUTS", INPUTS)],
+    );
+    let ready = Command::new("cargo").args(["+nightly", "fuzz", "--version"]).output();
+    if !ready.is_ok_and(|output| output.status.success()) {
+        eprintln!(
+            "libFuzzer's part is missing: it needs a nightly toolchain (rustup toolchain install nightly) and cargo-fuzz \
+             (cargo install cargo-fuzz)"
+        );
+        return false;
+    }
+    let runs = format!("-runs={INPUTS}");
+    let guided =
+        Command::new("cargo").args(["+nightly", "fuzz", "run", "decode", "--", &runs, "-max_len=512"]).status();
+    mutated && guided.is_ok_and(|status| status.success())
+}

@@ -1,0 +1,66 @@
+//! Adds up what the test harnesses of many crates report.
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+/// Counts over all `test result:` lines.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Tests that passed.
+    pub passed: usize,
+    /// Tests that failed.
+    pub failed: usize,
+    /// Tests marked ignored.
+    pub ignored: usize,
+}
+
+impl Tally {
+    /// Runs a command, shows its output and counts; whether it succeeded.
+    pub fn follow(&mut self, command: &mut Command) -> bool {
+        let child = command.stdout(Stdio::piped()).spawn();
+        let mut child = match child {
+            Ok(child) => child,
+            Err(error) => {
+                eprintln!("cannot be run: {error}");
+                return false;
+            }
+        };
+        for line in child.stdout.take().into_iter().flat_map(|out| BufReader::new(out).lines()).map_while(Result::ok) {
+            println!("{line}");
+            self.count(&line);
+        }
+        child.wait().is_ok_and(|status| status.success())
+    }
+
+    /// Counts a line like `test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; …`.
+    fn count(&mut self, line: &str) {
+        let Some((_, counts)) = line.split_once("test result: ") else { return };
+        for part in counts.split([';', '.']) {
+            let mut words = part.split_whitespace();
+            let (Some(number), Some(what)) = (words.next().and_then(|word| word.parse::<usize>().ok()), words.next())
+            else {
+                continue;
+            };
+            match what {
+                "passed" => self.passed += number,
+                "failed" => self.failed += number,
+                "ignored" => self.ignored += number,
+                _ => {}
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_the_harness_are_added_up() {
+        let mut tally = Tally::default();
+        tally.count("running 4 tests");
+        tally.count("test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out; finished in 0.00s");
+        tally.count("test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 5 filtered out");
+        assert_eq!(tally, Tally { passed: 5, failed: 1, ignored: 1 });
+    }
+}

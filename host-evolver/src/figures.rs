@@ -33,6 +33,10 @@ pub fn perfect_circle(ring: &Ring) -> f64 {
     2.0 / (1.0 + libm::exp(ring.steepness * (ring.d_max - ring.d_min) / 2.0))
 }
 
+/// Individuals of the last population are drawn beside the front up to so many times its worst f2 and its most nodes.
+const NEARBY_F2: f64 = 1.25;
+const NEARBY_NODES: usize = 3;
+
 /// The Pareto front among the last population, knees named.
 ///
 /// # Errors
@@ -45,9 +49,14 @@ pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> 
         knee,
         label: short_expression(individual),
     };
-    let is_member = |individual: &&Individual| front.iter().any(|member| member.individual == **individual);
+    let is_member = |individual: &Individual| front.iter().any(|member| member.individual == *individual);
+    let most_nodes = front.iter().map(|member| member.individual.tree.size()).max().unwrap_or(0);
+    let worst_f2 = front.iter().map(|member| member.individual.f2).fold(0.0, f64::max);
+    let is_near = |individual: &Individual| {
+        individual.f2 <= NEARBY_F2 * worst_f2 && individual.tree.size() <= NEARBY_NODES * most_nodes
+    };
     let members = front.iter().map(|member| point(&member.individual, knee_kind(member)));
-    let others = population.iter().filter(|individual| !is_member(individual)).map(|other| point(other, None));
+    let others = population.iter().filter(|other| !is_member(other) && is_near(other)).map(|other| point(other, None));
     let points: Vec<_> = members.chain(others).collect();
     let best = perfect_circle(ring);
     let reference = report::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
@@ -124,7 +133,7 @@ pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<
         |robot: usize| sampled.iter().map(|(_, frame)| pair(metres(frame.robots[robot].position_um))).collect();
     let trajectories: Vec<Vec<[f64; 2]>> = (0..robots).map(trajectory).collect();
     let world = scenario.scaled(scale);
-    let window = window_around(trajectories.iter().flatten().copied(), 3.0 * BODY_RADIUS);
+    let window = window_around(trajectories.iter().flatten().copied(), 1.5 * simulation.ring_radius_m);
     let ruler = PatternRuler::new(blob, scenario).ok();
     report::trace(&report::TraceFigure {
         window,
@@ -164,7 +173,9 @@ fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> f64 {
 }
 
 fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<report::Instant> {
-    let ticks: Vec<usize> = (0..INSTANTS).map(|i| i * frames.len().saturating_sub(1) / (INSTANTS - 1)).collect();
+    let seconds = (frames.len().saturating_sub(1) as f64 / per_second).floor();
+    let whole_second = |instant: usize| (seconds * instant as f64 / (INSTANTS - 1) as f64).round();
+    let ticks: Vec<usize> = (0..INSTANTS).map(|instant| (whole_second(instant) * per_second) as usize).collect();
     let scale = f64::from(blob.scale);
     let unscaled = |target: &[i32; 2]| {
         let point = metres(*target);

@@ -7,24 +7,12 @@ use std::time::Duration;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-/// The binary, built once for all tests of this file with the profile of the tests.
 fn grn() -> Command {
-    static BUILT: std::sync::OnceLock<PathBuf> = std::sync::OnceLock::new();
-    let binary = BUILT.get_or_init(|| {
-        // Tests of another package find no path to a binary in their environment, but it lies beside them.
-        let beside = std::env::current_exe().unwrap_or_default();
-        let folder = beside.parent().and_then(Path::parent).unwrap_or(Path::new("."));
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet", "--package", "host-evolver", "--bin", "grn"]);
-        build.arg("--target-dir").arg(folder.parent().unwrap_or(folder)).env("CARGO_PROFILE_DEV_OPT_LEVEL", "2");
-        assert!(build.status().is_ok_and(|status| status.success()), "grn cannot be built");
-        folder.join("grn")
-    });
-    Command::new(binary)
+    Command::new(env!("CARGO_BIN_EXE_grn"))
 }
 
 fn repository(path: &str) -> PathBuf {
-    grn_tests::golden::repository(path)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }
 
 fn channel() -> PathBuf {
@@ -130,7 +118,7 @@ fn ctrl_c_keeps_what_was_done_and_says_how_to_go_on() -> Outcome {
 
 #[test]
 fn eval_prints_the_steady_state_in_every_number_type() -> Outcome {
-    let golden: serde_json::Value = serde_json::from_str(include_str!("../golden/published-models.json"))?;
+    let golden: serde_json::Value = serde_json::from_str(include_str!("../../tests/golden/published-models.json"))?;
     for (number, tolerance) in [("f64", 1e-6), ("f32", 2e-6), ("q8.24", 2e-6)] {
         for name in ["nand-xnor", "andn-xnor", "andn-nand-xnor", "eh-grn-1", "eh-grn-2"] {
             let blob = repository(&format!("models/{name}.grn"));
@@ -177,7 +165,7 @@ fn show_and_draw_speak_json() -> Outcome {
     assert_eq!(snapshots.len(), 25);
     assert_eq!(snapshots[5]["enclosed"], serde_json::json!([false]));
     assert!(snapshots[5]["radius_min"].is_null() && snapshots[5]["clearance_min"].is_null());
-    assert!(std::fs::read_to_string(picture)?.starts_with("<svg"));
+    assert!(std::fs::read_to_string(picture)?.contains("<svg"));
     Ok(())
 }
 

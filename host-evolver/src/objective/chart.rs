@@ -3,37 +3,50 @@
 use super::lanes::{Lanes, WIDTH};
 use super::model::Model;
 
-/// Divisions of the unit interval of x1 and x2; x1 runs from 0 to the number of targets.
+/// Divisions of the unit interval of x1 and x2 on the coarsest chart; x1 runs from 0 to the number of targets.
 const X1_DIVISIONS: usize = 32;
 const X2_DIVISIONS: usize = 16;
+/// How many times finer a chart may be.
+const FINENESS: [usize; 2] = [1, 2];
+
+/// A chart's accuracy is an estimate: a sign is certain this many times farther from zero.
+const MARGIN: f64 = 1.5;
 
 /// φ at a grid of (x1, x2), between which it is interpolated linearly.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Chart {
+    /// Divisions of the unit interval of x1 and x2.
+    divisions: [f64; 2],
     columns: usize,
     errors: Vec<f64>,
     accuracy: f64,
 }
 
 impl Chart {
-    /// Fills the chart for a model and for x1 up to `targets`.
-    pub(super) fn draw(&mut self, model: &Model, targets: usize) {
+    /// Fills the chart for a model and for x1 up to `targets`, so finely that it is off by less than `tolerance`.
+    /// Returns whether that was possible.
+    pub(super) fn draw(&mut self, model: &Model, targets: usize, tolerance: f64) -> bool {
+        FINENESS.into_iter().any(|fineness| {
+            self.draw_at(fineness, model, targets);
+            self.accuracy < tolerance
+        })
+    }
+
+    fn draw_at(&mut self, fineness: usize, model: &Model, targets: usize) {
+        let (x1_divisions, x2_divisions) = (X1_DIVISIONS * fineness, X2_DIVISIONS * fineness);
+        self.divisions = [x1_divisions as f64, x2_divisions as f64];
+        let [per_x1, per_x2] = self.divisions.map(|divisions| 1.0 / divisions);
         // One column more than needed, so that the last cell has a far side.
-        self.columns = (targets * X1_DIVISIONS + 2).next_multiple_of(WIDTH);
+        self.columns = (targets * x1_divisions + 2).next_multiple_of(WIDTH);
         self.errors.clear();
-        for row in 0..X2_DIVISIONS + 2 {
-            let x2 = Lanes::splat(row as f64 / X2_DIVISIONS as f64);
+        for row in 0..x2_divisions + 2 {
+            let x2 = Lanes::splat(row as f64 * per_x2);
             for first in (0..self.columns).step_by(WIDTH) {
-                let x1 = Lanes(std::array::from_fn(|lane| (first + lane) as f64 / X1_DIVISIONS as f64));
+                let x1 = Lanes(std::array::from_fn(|lane| (first + lane) as f64 * per_x1));
                 self.errors.extend(model.errors(x1, x2).0);
             }
         }
         self.accuracy = self.largest_second_difference() / 8.0;
-    }
-
-    /// How far [`Chart::at`] may be off: an eighth of the largest second differences along both axes.
-    pub(super) fn accuracy(&self) -> f64 {
-        self.accuracy
     }
 
     fn largest_second_difference(&self) -> f64 {
@@ -49,15 +62,22 @@ impl Chart {
     }
 
     /// φ at (x1, x2) in the charted range, by bilinear interpolation.
+    #[inline]
     pub(super) fn at(&self, x1: f64, x2: f64) -> f64 {
-        let (east, north) = (x1 * X1_DIVISIONS as f64, x2 * X2_DIVISIONS as f64);
-        let (column, row) = (east as usize, north as usize);
+        let (east, north) = (x1 * self.divisions[0], x2 * self.divisions[1]);
+        let (column, row) = (east as u32 as usize, north as u32 as usize);
         let (t, u) = (east - column as f64, north - row as f64);
         let corner = row * self.columns + column;
         let near = &self.errors[corner..corner + 2];
         let far = &self.errors[corner + self.columns..corner + self.columns + 2];
         let (below, above) = (near[0] + (near[1] - near[0]) * t, far[0] + (far[1] - far[0]) * t);
         below + (above - below) * u
+    }
+
+    /// φ at eight places, if its sign is certain at all of them.
+    pub(super) fn sure_at(&self, x1: Lanes, x2: Lanes) -> Option<Lanes> {
+        let errors = Lanes(std::array::from_fn(|lane| self.at(x1.0[lane], x2.0[lane])));
+        errors.0.iter().all(|error| error.abs() > MARGIN * self.accuracy).then_some(errors)
     }
 }
 
@@ -71,12 +91,12 @@ mod tests {
         for published in &PUBLISHED {
             let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
             let mut chart = Chart::default();
-            chart.draw(&model, 2);
+            assert!(chart.draw(&model, 2, 0.005), "{}", published.name);
             for i in 0..=200 {
                 for j in 0..=100 {
                     let (x1, x2) = (f64::from(i) * 0.01, f64::from(j) * 0.01);
                     let error = (chart.at(x1, x2) - model.error(x1, x2)).abs();
-                    assert!(error <= 1.1 * chart.accuracy(), "{}: off by {error}", published.name);
+                    assert!(error <= 1.1 * chart.accuracy, "{}: off by {error}", published.name);
                 }
             }
         }

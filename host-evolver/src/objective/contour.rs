@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::lanes::{Lanes, WIDTH};
-use super::lattice::{Direction, Edge, Medium, NodeIndex};
+use super::lattice::{Direction, Edge, Medium, NodeIndex, Site};
 use super::model::Model;
 use super::ring::thinned;
 use super::world::Snapshot;
@@ -10,17 +10,6 @@ use grn_core::geometry::Point;
 
 /// A ring's points are at least this far apart, in lattice steps.
 const CLOSEST_POINTS: f64 = 0.25;
-
-/// What is known of a lattice node in the current moment.
-#[derive(Clone, Copy, Default)]
-struct Cell {
-    error: f64,
-    epoch: u32,
-    /// The last explored component that holds it, from 1; 0 for none.
-    component: u16,
-    /// Directions in which the contour has been followed across the edge to that neighbour, as bits.
-    followed: u8,
-}
 
 /// What a flood found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,69 +37,101 @@ type Crossing = (NodeIndex, Direction);
 /// Between two calls of [`Follower::begin`] every call must be given the same view.
 pub(super) struct Follower<M> {
     medium: M,
-    cells: Vec<Cell>,
-    epoch: u32,
+    /// The pattern error at each node, minus infinity on the border; valid where `known` is the current view's number.
+    errors: Vec<f64>,
+    known: Vec<u32>,
+    view: u32,
+    /// The last explored component that holds each node; 0 for none.
+    components: Vec<u32>,
+    component: u32,
+    components_before: u32,
+    /// Directions in which the contour has been followed across the edge to that neighbour, as bits.
+    followed: Vec<u8>,
     flood: Vec<NodeIndex>,
     crossings: Vec<Crossing>,
     edges: Vec<Edge>,
-    components: u16,
 }
 
 impl<M: Medium> Follower<M> {
     pub(super) fn new(medium: M) -> Self {
-        let cells = vec![Cell::default(); medium.lattice().nodes().len()];
-        Follower { medium, cells, epoch: 0, flood: Vec::new(), crossings: Vec::new(), edges: Vec::new(), components: 0 }
+        let nodes = medium.lattice().nodes().len();
+        Follower {
+            medium,
+            errors: vec![0.0; nodes],
+            known: vec![0; nodes],
+            view: 0,
+            components: vec![0; nodes],
+            component: 0,
+            components_before: 0,
+            followed: vec![0; nodes],
+            flood: Vec::new(),
+            crossings: Vec::new(),
+            edges: Vec::new(),
+        }
     }
 
     /// Forgets the last model and moment.
     pub(super) fn begin(&mut self) {
-        self.epoch += 1;
-        self.components = 0;
+        if self.view == u32::MAX || self.component > u32::MAX / 2 {
+            self.known.fill(0);
+            self.components.fill(0);
+            (self.view, self.component) = (0, 0);
+        }
+        self.view += 1;
+        self.components_before = self.component;
     }
 
     /// The node next to `target` from which its component can be flooded: nearest first, error at least `threshold`.
     pub(super) fn start(&mut self, target: Point<f64>, threshold: f64, view: View<'_>) -> Option<NodeIndex> {
-        let corners = self.medium.lattice().cell_around(target);
+        let corners = self.medium.lattice().cell_around(target)?;
         corners.into_iter().find(|&node| self.error(node, view) >= threshold)
     }
 
-    /// How many components were explored since the beginning.
-    pub(super) fn components(&self) -> u16 {
-        self.components
+    /// The number of the last explored component; they are numbered in turn.
+    pub(super) fn last_component(&self) -> u32 {
+        self.component
     }
 
-    /// The number of the last explored component that holds a node, from 1; 0 for none.
-    pub(super) fn component_of(&self, node: NodeIndex) -> u16 {
-        self.cells[node].component
+    /// Whether a component was explored since the beginning.
+    pub(super) fn is_current(&self, component: u32) -> bool {
+        component > self.components_before
+    }
+
+    /// The number of the last explored component that holds a node; 0 for none.
+    pub(super) fn component_of(&self, node: NodeIndex) -> u32 {
+        self.components[node]
     }
 
     /// The pattern error at a node; nodes on the border count as outside.
+    #[inline(always)]
     fn error(&mut self, node: NodeIndex, view: View<'_>) -> f64 {
-        if self.cells[node].epoch != self.epoch {
-            match view.chart {
-                Some(chart) => self.look_up(node, chart, view),
-                None => self.compute_run(node - node % WIDTH, view),
+        if self.known[node] == self.view { self.errors[node] } else { self.find(node, view) }
+    }
+
+    #[inline(never)]
+    fn find(&mut self, node: NodeIndex, view: View<'_>) -> f64 {
+        match view.chart {
+            Some(chart) if M::KEEPS_INPUTS => {
+                let [x1, x2] = self.medium.inputs_at(view.snapshot, node);
+                self.know(node, chart.at(x1, x2));
             }
+            _ => self.compute_run(node - node % WIDTH, view),
         }
-        self.cells[node].error
+        self.errors[node]
     }
 
-    fn look_up(&mut self, node: NodeIndex, chart: &Chart, view: View<'_>) {
-        let [x1, x2] = self.medium.inputs_at(view.snapshot, node);
-        self.know(node, chart.at(x1, x2));
-    }
-
+    #[inline(never)]
     fn compute_run(&mut self, first: NodeIndex, view: View<'_>) {
         let [x1, x2] = self.medium.inputs(view.snapshot, first);
-        let errors = view.model.errors(x1, x2);
+        let errors = view.chart.and_then(|chart| chart.sure_at(x1, x2)).unwrap_or_else(|| view.model.errors(x1, x2));
         for (lane, error) in errors.0.into_iter().enumerate() {
             self.know(first + lane, error);
         }
     }
 
     fn know(&mut self, node: NodeIndex, error: f64) {
-        let error = if self.medium.is_on_border(node) { f64::NEG_INFINITY } else { error };
-        self.cells[node] = Cell { error, epoch: self.epoch, component: 0, followed: 0 };
+        self.errors[node] = if self.medium.site(node) == Site::Border { f64::NEG_INFINITY } else { error };
+        self.known[node] = self.view;
     }
 
     fn is_inside(&mut self, node: NodeIndex, view: View<'_>) -> bool {
@@ -119,15 +140,32 @@ impl<M: Medium> Follower<M> {
 
     /// Whether the component of `start` at the given threshold is closed; stops at the first leak.
     pub(super) fn probe(&mut self, start: NodeIndex, threshold: f64, view: View<'_>) -> Component {
-        let label = self.flood_from(start);
+        self.flood_from(start);
+        self.flood_at(threshold, view)
+    }
+
+    /// Lets the closed component labelled last grow down to the given threshold; stops at the first leak.
+    pub(super) fn widen(&mut self, threshold: f64, view: View<'_>) -> Component {
+        let crossings = std::mem::take(&mut self.crossings);
+        for &(node, direction) in &crossings {
+            let beyond = self.medium.lattice().neighbour(node, direction);
+            if self.errors[beyond] >= threshold {
+                self.join(beyond);
+            }
+        }
+        self.crossings = crossings;
+        self.flood_at(threshold, view)
+    }
+
+    fn flood_at(&mut self, threshold: f64, view: View<'_>) -> Component {
         while let Some(node) = self.flood.pop() {
-            if self.medium.is_leak(node) {
+            if self.medium.site(node) == Site::Leak {
                 return Component::Leaks;
             }
             for direction in Direction::ALL {
                 let neighbour = self.medium.lattice().neighbour(node, direction);
-                if self.error(neighbour, view) >= threshold {
-                    self.join(neighbour, label);
+                if self.components[neighbour] != self.component && self.error(neighbour, view) >= threshold {
+                    self.join(neighbour);
                 }
             }
         }
@@ -136,11 +174,11 @@ impl<M: Medium> Follower<M> {
 
     /// Labels the component of `start` and collects where its edge crosses the lattice. May stop at the first leak.
     pub(super) fn label(&mut self, start: NodeIndex, stop_at_leak: bool, view: View<'_>) -> Component {
-        let label = self.flood_from(start);
+        self.flood_from(start);
         let mut found = Component::Closed;
         self.crossings.clear();
         while let Some(node) = self.flood.pop() {
-            if self.medium.is_leak(node) {
+            if self.medium.site(node) == Site::Leak {
                 found = Component::Leaks;
                 if stop_at_leak {
                     return found;
@@ -148,17 +186,18 @@ impl<M: Medium> Follower<M> {
             }
             let neighbours = Direction::ALL.map(|direction| self.medium.lattice().neighbour(node, direction));
             let inside = neighbours.map(|neighbour| self.is_inside(neighbour, view));
+            self.followed[node] = 0;
             for direction in Direction::ALL {
                 let (neighbour, right) = (neighbours[direction.index()], direction.right());
                 if inside[direction.index()] {
-                    self.join(neighbour, label);
+                    self.join(neighbour);
                     continue;
                 }
                 self.crossings.push((node, direction));
                 if !inside[right.index()] {
                     let diagonal = self.diagonal(node, direction);
                     if self.is_inside(diagonal, view) && self.is_joined_across(node, direction, view) {
-                        self.join(diagonal, label);
+                        self.join(diagonal);
                     }
                 }
             }
@@ -166,18 +205,15 @@ impl<M: Medium> Follower<M> {
         found
     }
 
-    fn flood_from(&mut self, start: NodeIndex) -> u16 {
-        self.components += 1;
+    fn flood_from(&mut self, start: NodeIndex) {
+        self.component += 1;
         self.flood.clear();
-        self.flood.push(start);
-        self.cells[start].component = self.components;
-        self.components
+        self.join(start);
     }
 
-    fn join(&mut self, node: NodeIndex, label: u16) {
-        let cell = &mut self.cells[node];
-        if cell.component != label {
-            cell.component = label;
+    fn join(&mut self, node: NodeIndex) {
+        if self.components[node] != self.component {
+            self.components[node] = self.component;
             self.flood.push(node);
         }
     }
@@ -210,7 +246,7 @@ impl<M: Medium> Follower<M> {
     pub(super) fn follow(&mut self, view: View<'_>, loops: &mut Vec<Vec<Point<f64>>>) {
         let crossings = std::mem::take(&mut self.crossings);
         for &(node, direction) in &crossings {
-            if self.cells[node].followed & (1 << direction.index()) == 0 {
+            if self.followed[node] & (1 << direction.index()) == 0 {
                 self.walk((node, direction), view);
                 loops.push(self.refined(view));
             }
@@ -223,7 +259,7 @@ impl<M: Medium> Follower<M> {
         self.edges.clear();
         let (mut node, mut direction) = start;
         loop {
-            self.cells[node].followed |= 1 << direction.index();
+            self.followed[node] |= 1 << direction.index();
             self.edges.push(Edge { from: node, to: self.medium.lattice().neighbour(node, direction) });
             (node, direction) = self.next_crossing(node, direction, view);
             if (node, direction) == start {
@@ -254,9 +290,9 @@ impl<M: Medium> Follower<M> {
         let mut points = Vec::with_capacity(self.edges.len());
         for edges in self.edges.chunks(WIDTH) {
             let filled = std::array::from_fn(|lane| edges[lane.min(edges.len() - 1)]);
-            let inner = filled.map(|edge| self.cells[edge.from].error);
+            let inner = filled.map(|edge| self.errors[edge.from]);
             // A border node's error is minus infinity: the chord then is 0, the inner node itself.
-            let outer = filled.map(|edge| self.cells[edge.to].error);
+            let outer = filled.map(|edge| self.errors[edge.to]);
             let chord = Lanes(std::array::from_fn(|lane| inner[lane] / (inner[lane] - outer[lane])));
             let [x1, x2] = self.medium.inputs_along(view.snapshot, &filled, chord);
             let middle = view.model.errors(x1, x2);

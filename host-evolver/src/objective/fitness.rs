@@ -1,11 +1,12 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
 use super::model::Model;
-use super::profile::Profile;
+use super::profile::{Profile, Sigmoid};
 use super::ring::candidates;
 use super::tracer::{Contours, Tracer};
 use super::world::{Snapshot, World};
 use crate::tree::Tree;
+use firmware_sim::scenario::Ring;
 use grn_core::geometry::Point;
 
 /// Candidate points per ring that f2 averages over.
@@ -37,28 +38,22 @@ impl Evaluation {
     }
 }
 
-type DistanceTerm = Box<dyn Fn(f64) -> f64 + Send + Sync>;
-
-/// The terms of f2 as functions of a distance in metres.
-struct Terms {
+/// The terms of f2 as functions of a distance.
+#[derive(Clone, Debug)]
+pub(super) struct Terms {
     /// sig(d, d_max, k1) + sig(d_min, d, k2).
-    target: Profile<DistanceTerm>,
+    target: Profile,
     /// sig(d_obstacle, d, k3).
-    obstacle: Profile<DistanceTerm>,
-}
-
-/// sig(x, θ, k) of the paper.
-fn sig(x: f64, theta: f64, k: f64) -> f64 {
-    1.0 / (1.0 + libm::exp(-k * (x - theta)))
+    obstacle: Profile,
 }
 
 impl Terms {
-    fn of(world: &World) -> Terms {
-        let ring = world.scenario().ring();
-        let (k, d_min, d_max, d_obstacle) = (ring.steepness, ring.d_min, ring.d_max, ring.d_obstacle);
+    pub(super) fn of(ring: Ring) -> Terms {
+        let rising = |threshold: f64| Sigmoid { threshold, slope: ring.steepness };
+        let falling = |threshold: f64| Sigmoid { threshold, slope: -ring.steepness };
         Terms {
-            target: Profile::new(Box::new(move |d| sig(d, d_max, k) + sig(d_min, d, k)), k, d_max),
-            obstacle: Profile::new(Box::new(move |d| sig(d_obstacle, d, k)), k, d_obstacle),
+            target: Profile::new(vec![rising(ring.d_max), falling(ring.d_min)]),
+            obstacle: Profile::new(vec![falling(ring.d_obstacle)]),
         }
     }
 }
@@ -66,14 +61,13 @@ impl Terms {
 /// Judges models in one world; one per thread.
 pub struct Judge<'w> {
     world: &'w World,
-    terms: Terms,
     tracer: Tracer<'w>,
 }
 
 impl<'w> Judge<'w> {
     /// A judge for `world`.
     pub fn new(world: &'w World) -> Self {
-        Judge { world, terms: Terms::of(world), tracer: Tracer::new(world) }
+        Judge { world, tracer: Tracer::new(world) }
     }
 
     /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold.
@@ -89,7 +83,7 @@ impl<'w> Judge<'w> {
     pub fn judge(&mut self, model: &Model) -> Evaluation {
         let (mut f2, mut violation) = (0.0, 0.0);
         for (snapshot, contours) in self.tracer.trace_all(model) {
-            let moment = judge_moment(self.world, &self.terms, snapshot, &contours);
+            let moment = judge_moment(self.world, snapshot, &contours);
             f2 += moment.f2;
             violation += moment.violation;
         }
@@ -98,14 +92,14 @@ impl<'w> Judge<'w> {
     }
 }
 
-fn judge_moment(world: &World, terms: &Terms, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
     let lost = lost / snapshot.targets.len() as f64;
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
     for ring in &contours.rings {
         for point in candidates(ring, CANDIDATES_PER_RING) {
-            to_targets += sum_over(&snapshot.targets, point, &terms.target);
-            to_obstacles += sum_over(&snapshot.obstacle_points, point, &terms.obstacle);
+            to_targets += sum_over(&snapshot.targets, point, &world.terms.target);
+            to_obstacles += sum_over(&snapshot.obstacle_points, point, &world.terms.obstacle);
             close += usize::from(world.is_closer_than(point, SMALLEST_CLEARANCE));
             count += 1;
         }
@@ -119,7 +113,7 @@ fn judge_moment(world: &World, terms: &Terms, snapshot: &Snapshot, contours: &Co
     Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
 }
 
-fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile<DistanceTerm>) -> f64 {
+fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile) -> f64 {
     sources
         .iter()
         .map(|&source| {

@@ -75,26 +75,32 @@ impl Lattice {
         }
     }
 
-    pub(super) fn is_on_border(&self, node: NodeIndex) -> bool {
+    /// How many nodes lie between a node and the lattice's border, along rows or columns; 0 on the border.
+    pub(super) fn depth(&self, node: NodeIndex) -> usize {
         let (column, row) = (node % self.columns, node / self.columns);
-        column == 0 || row == 0 || column + 1 == self.columns || row + 1 == self.rows
+        column.min(row).min(self.columns - 1 - column).min(self.rows - 1 - row)
     }
 
-    /// The corners of the cell that holds `point`, nearest first; empty outside the lattice.
-    pub(super) fn cell_around(&self, point: Point<f64>) -> Vec<NodeIndex> {
+    /// The corners of the cell that holds `point`, nearest first; none outside the lattice.
+    pub(super) fn cell_around(&self, point: Point<f64>) -> Option<[NodeIndex; 4]> {
         let place = (point - self.origin) * (1.0 / self.step);
         let (column, row) = (place.x.floor(), place.y.floor());
         let fits = |value: f64, count: usize| value >= 0.0 && value + 1.0 < count as f64;
         if !fits(column, self.columns) || !fits(row, self.rows) {
-            return Vec::new();
+            return None;
         }
         let corner = row as usize * self.columns + column as usize;
-        let mut corners = vec![corner, corner + 1, corner + self.columns, corner + self.columns + 1];
-        corners.sort_by(|&a, &b| {
-            let distance = |node| (self.point(node) - point).length();
-            distance(a).total_cmp(&distance(b)).then(a.cmp(&b))
-        });
-        corners
+        let (east, north) = (place.x - column > 0.5, place.y - row > 0.5);
+        // From the near to the far side along each axis; the longer way first decides between the two in the middle.
+        let (near_x, far_x) = if east { (1, 0) } else { (0, 1) };
+        let (near_y, far_y) = if north { (self.columns, 0) } else { (0, self.columns) };
+        let off_centre = |place: f64| (place - place.floor() - 0.5).abs();
+        let middle = if off_centre(place.x) <= off_centre(place.y) {
+            [far_x + near_y, near_x + far_y]
+        } else {
+            [near_x + far_y, far_x + near_y]
+        };
+        Some([near_x + near_y, middle[0], middle[1], far_x + far_y].map(|offset| corner + offset))
     }
 
     /// A node next to `point`, for looking up what varies slowly; `None` outside the lattice.
@@ -113,8 +119,32 @@ pub(super) struct Edge {
     pub(super) to: NodeIndex,
 }
 
+/// What a pattern meets at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Site {
+    /// Open space.
+    Open,
+    /// A wall, or the last node before the border: a pattern that holds it leaks.
+    Leak,
+    /// The lattice's border: outside every pattern.
+    Border,
+}
+
+impl Site {
+    pub(super) fn of(lattice: &Lattice, node: NodeIndex, clearance: f64) -> Site {
+        match lattice.depth(node) {
+            0 => Site::Border,
+            1 => Site::Leak,
+            _ if clearance <= 0.0 => Site::Leak,
+            _ => Site::Open,
+        }
+    }
+}
+
 /// A lattice with what models need to know at its nodes.
 pub(super) trait Medium {
+    /// Whether inputs at nodes are at hand.
+    const KEEPS_INPUTS: bool;
     fn world(&self) -> &World;
     fn lattice(&self) -> &Lattice;
     /// (x1, x2) at eight nodes from `first` on, a multiple of eight.
@@ -123,13 +153,8 @@ pub(super) trait Medium {
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
     /// Signed distance to the nearest wall, metres, negative inside.
     fn clearance(&self, node: NodeIndex) -> f64;
-    /// Whether a pattern that holds this node leaks: it is in a wall, or at the border.
-    fn is_leak(&self, node: NodeIndex) -> bool;
-
-    /// Whether the node is on the lattice's border.
-    fn is_on_border(&self, node: NodeIndex) -> bool {
-        self.lattice().is_on_border(node)
-    }
+    /// What a pattern meets at a node.
+    fn site(&self, node: NodeIndex) -> Site;
 
     /// The point at the fraction `t` of the way along an edge.
     fn along(&self, edge: Edge, t: f64) -> Point<f64> {
@@ -154,6 +179,7 @@ pub(super) trait Medium {
 pub(super) struct Kept<'w>(pub &'w World);
 
 impl Medium for Kept<'_> {
+    const KEEPS_INPUTS: bool = true;
     fn world(&self) -> &World {
         self.0
     }
@@ -161,60 +187,15 @@ impl Medium for Kept<'_> {
         &self.0.lattice
     }
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        let run = |values: &[f64]| Lanes(std::array::from_fn(|lane| values[first + lane]));
-        [run(&snapshot.x1), run(&self.0.x2)]
+        [0, 1].map(|input| Lanes(std::array::from_fn(|lane| f64::from(snapshot.inputs[first + lane][input]))))
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
-        [snapshot.x1[node], self.0.x2[node]]
-    }
-    fn is_on_border(&self, node: NodeIndex) -> bool {
-        self.0.leaks[node] && self.0.lattice.is_on_border(node)
+        snapshot.inputs[node].map(f64::from)
     }
     fn clearance(&self, node: NodeIndex) -> f64 {
         self.0.clearance[node]
     }
-    fn is_leak(&self, node: NodeIndex) -> bool {
-        self.0.leaks[node]
+    fn site(&self, node: NodeIndex) -> Site {
+        self.0.sites[node]
     }
-}
-
-/// A finer lattice, whose inputs are computed when asked for.
-pub(super) struct Computed<'w> {
-    world: &'w World,
-    lattice: Lattice,
-}
-
-impl<'w> Computed<'w> {
-    pub(super) fn new(world: &'w World, step: f64) -> Self {
-        Computed { world, lattice: Lattice::over(world.scenario().region(), step) }
-    }
-}
-
-impl Medium for Computed<'_> {
-    fn world(&self) -> &World {
-        self.world
-    }
-    fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        let points = std::array::from_fn(|lane| self.lattice.point(first + lane));
-        let clearance = points.map(|point| self.world.clearance_at(point));
-        [self.world.x1_at_all(snapshot, &points), self.world.x2_at_all(Lanes(clearance))]
-    }
-    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
-        self.world.inputs_at(snapshot, self.lattice.point(node))
-    }
-    fn clearance(&self, node: NodeIndex) -> f64 {
-        self.world.clearance_at(self.lattice.point(node))
-    }
-    fn is_leak(&self, node: NodeIndex) -> bool {
-        next_to_border(&self.lattice, node) || self.clearance(node) <= 0.0
-    }
-}
-
-/// Whether some neighbour of a node is on the border.
-pub(super) fn next_to_border(lattice: &Lattice, node: NodeIndex) -> bool {
-    lattice.is_on_border(node)
-        || Direction::ALL.into_iter().any(|direction| lattice.is_on_border(lattice.neighbour(node, direction)))
 }

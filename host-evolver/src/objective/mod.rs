@@ -5,6 +5,7 @@
 
 mod chart;
 mod contour;
+mod fine;
 mod fitness;
 mod lanes;
 mod lattice;

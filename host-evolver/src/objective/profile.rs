@@ -1,46 +1,74 @@
-//! Sigmoids of a distance, tabulated over the squared distance: no square root, no exponential in the inner loop.
+//! Sums of sigmoids of a distance, tabulated over the squared distance: no square root, no exponential in the inner loop.
 
-/// Largest product of table spacing and steepness; keeps the interpolation error below 1e-7.
+/// Largest product of table spacing (m²) and steepness (1/m); keeps the interpolation error below 1e-7.
 const SPACING_TIMES_STEEPNESS: f64 = 0.1;
-/// Nearer than this (metres) the function is evaluated exactly: there the square root bends it.
+/// Largest table spacing, m²: gentle sigmoids too are bent by the square root.
+const LARGEST_SPACING: f64 = 0.01;
+/// Nearer than this (metres) the sum is evaluated exactly: there the square root bends it most.
 const NEAR: f64 = 0.5;
-/// Beyond this many steepness lengths from the last threshold the function has reached its limit.
+/// This many steepness lengths beyond the last threshold the sum has reached its limit.
 const REACH: f64 = 20.0;
 
-/// A smooth function of a distance, which tends to a limit.
-#[derive(Clone, Debug)]
-pub(super) struct Profile<F> {
-    exact: F,
-    limit: f64,
-    per_spacing: f64,
-    /// Values at squared distances `i` · spacing.
-    table: Vec<f64>,
+/// The paper's sig(x, θ, k) as a function of a distance x = d, or with negative k of θ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sigmoid {
+    /// θ, metres.
+    pub(super) threshold: f64,
+    /// k, 1/m; negative if it falls with the distance.
+    pub(super) slope: f64,
 }
 
-impl<F: Fn(f64) -> f64> Profile<F> {
-    /// Tabulates `exact`, made of sigmoids of the given steepness (1/m) with thresholds up to `threshold` metres.
-    pub(super) fn new(exact: F, steepness: f64, threshold: f64) -> Self {
-        let spacing = SPACING_TIMES_STEEPNESS / steepness;
-        let reach = threshold + REACH / steepness;
-        let entries = (reach * reach / spacing).ceil() as usize + 4;
-        let table = (0..entries).map(|i| exact(libm::sqrt(i as f64 * spacing))).collect();
-        Profile { limit: exact(1e9), exact, per_spacing: 1.0 / spacing, table }
+impl Sigmoid {
+    fn at(self, distance: f64) -> f64 {
+        1.0 / (1.0 + libm::exp(-self.slope * (distance - self.threshold)))
+    }
+}
+
+/// A sum of sigmoids of a distance.
+#[derive(Clone, Debug)]
+pub(super) struct Profile {
+    sigmoids: Vec<Sigmoid>,
+    per_spacing: f64,
+    /// At each knot of squared distance the value and a sixth of the second difference.
+    knots: Vec<[f64; 2]>,
+}
+
+impl Profile {
+    /// Tabulates a sum of sigmoids.
+    pub(super) fn new(sigmoids: Vec<Sigmoid>) -> Self {
+        let steepest = sigmoids.iter().fold(1e-3, |most, sigmoid| sigmoid.slope.abs().max(most));
+        let spacing = (SPACING_TIMES_STEEPNESS / steepest).min(LARGEST_SPACING);
+        let reach = sigmoids.iter().map(|sigmoid| sigmoid.threshold + REACH / sigmoid.slope.abs()).fold(0.0, f64::max);
+        let count = (reach * reach / spacing).ceil() as usize + 2;
+        let mut profile = Profile { sigmoids, per_spacing: 1.0 / spacing, knots: Vec::new() };
+        let value = |place: usize| profile.exact(place as f64 * spacing);
+        // The first knot is never asked for, being near: its neighbour below does not matter.
+        let sixth = |place: usize| (value(place.max(1) - 1) + value(place + 1) - 2.0 * value(place)) / 6.0;
+        profile.knots = (0..count).map(|place| [value(place), sixth(place)]).collect();
+        profile
     }
 
-    /// The function at the root of `squared_distance`, by cubic interpolation.
+    /// The sum at the root of `squared_distance`, by cubic interpolation.
+    #[inline]
     pub(super) fn at(&self, squared_distance: f64) -> f64 {
         if squared_distance < NEAR * NEAR {
-            return (self.exact)(libm::sqrt(squared_distance));
+            return self.exact(squared_distance);
         }
-        let place = squared_distance * self.per_spacing;
-        let index = place as usize;
-        let Some(&[a, b, c, d]) = self.table.get(index.wrapping_sub(1)..).and_then(|rest| rest.first_chunk()) else {
-            return self.limit;
+        let place = (squared_distance * self.per_spacing).min((self.knots.len() - 2) as f64);
+        let index = place as u32;
+        let t = place - f64::from(index);
+        let u = 1.0 - t;
+        let Some(&[below, above]) = self.knots.get(index as usize..).and_then(|rest| rest.first_chunk()) else {
+            return self.exact(squared_distance);
         };
-        let t = place - index as f64;
-        let (s, u) = (t - 1.0, t + 1.0);
-        let v = t - 2.0;
-        u * v * (b * s - c * t) * 0.5 + t * s * (d * u - a * v) * (1.0 / 6.0)
+        // Everett's formula: the cubic through four knots.
+        u * (below[0] + (u * u - 1.0) * below[1]) + t * (above[0] + (t * t - 1.0) * above[1])
+    }
+
+    #[cold]
+    fn exact(&self, squared_distance: f64) -> f64 {
+        let distance = libm::sqrt(squared_distance);
+        self.sigmoids.iter().map(|sigmoid| sigmoid.at(distance)).sum()
     }
 }
 
@@ -50,13 +78,12 @@ mod tests {
 
     #[test]
     fn the_table_equals_the_function() {
-        for steepness in [2.0, 10.0, 40.0] {
-            let exact = |d: f64| {
-                let sig = |x: f64| 1.0 / (1.0 + libm::exp(-steepness * x));
-                sig(d - 2.0) + sig(1.0 - d)
-            };
-            let profile = Profile::new(exact, steepness, 2.0);
-            for i in 0..40_000 {
+        for steepness in [0.5, 2.0, 10.0, 40.0] {
+            let sig = |x: f64| 1.0 / (1.0 + libm::exp(-steepness * x));
+            let exact = |d: f64| sig(d - 2.0) + sig(1.0 - d);
+            let falling = Sigmoid { threshold: 1.0, slope: -steepness };
+            let profile = Profile::new(vec![Sigmoid { threshold: 2.0, slope: steepness }, falling]);
+            for i in 0..60_000 {
                 let d = f64::from(i) * 0.0005;
                 let error = (profile.at(d * d) - exact(d)).abs();
                 assert!(error < 1e-7, "steepness {steepness}, d = {d}: off by {error}");

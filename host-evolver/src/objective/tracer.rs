@@ -2,16 +2,17 @@
 
 use super::chart::Chart;
 use super::contour::{Component, Follower, View};
-use super::lattice::{Computed, Kept, Medium, NodeIndex};
+use super::fine::Computed;
+use super::lattice::{Kept, Medium, NodeIndex};
 use super::model::Model;
-use super::world::{LATTICE_STEP, Snapshot, World};
+use super::world::{Snapshot, World};
 use grn_core::geometry::Point;
 
-/// Spacing of the lattice that decides doubtful topology, metres.
-const FINE_STEP: f64 = LATTICE_STEP / 4.0;
 /// A component's topology is in doubt when it changes within this pattern error: a cell of the lattice can hide a neck
 /// or a gap that shallow.
 const DOUBT: f64 = 0.02;
+/// How far off a chart may be for models to be traced by it.
+const CHART_TOLERANCE: f64 = DOUBT / 4.0;
 
 /// The pattern of one model at one moment.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,93 +48,118 @@ impl<'w> Tracer<'w> {
     /// The patterns of `model` at each snapshot of the world, in turn.
     pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
         let targets = self.world.scenario().paths().len();
-        self.chart.draw(model, targets);
-        self.world.snapshots().iter().map(move |snapshot| (snapshot, self.trace(model, snapshot)))
+        let charted = self.chart.draw(model, targets, CHART_TOLERANCE);
+        self.world.snapshots().iter().map(move |snapshot| (snapshot, self.trace(model, charted, snapshot)))
     }
 
-    fn trace(&mut self, model: &Model, snapshot: &Snapshot) -> Contours {
-        let world = self.world;
-        let chart = (self.chart.accuracy() < DOUBT / 4.0).then_some(&self.chart);
-        let view = View { model, snapshot, chart };
-        let is_held = |&target: &Point<f64>| {
-            let [x1, x2] = world.inputs_at(snapshot, target);
-            model.error(x1, x2) >= 0.0
-        };
-        let held: Vec<bool> = snapshot.targets.iter().map(is_held).collect();
-        if is_in_doubt(&mut self.coarse, &held, view) {
-            let fine = self.fine.get_or_insert_with(|| Follower::new(Computed::new(world, FINE_STEP)));
-            fine.begin();
-            trace_on(fine, &held, self.outline_leaks, View { chart: None, ..view })
-        } else {
-            trace_on(&mut self.coarse, &held, self.outline_leaks, view)
+    fn trace(&mut self, model: &Model, charted: bool, snapshot: &Snapshot) -> Contours {
+        let view = View { model, snapshot, chart: charted.then_some(&self.chart) };
+        let mut attempt = Attempt { outline_leaks: self.outline_leaks, ..Attempt::default() };
+        if attempt.trace(&mut self.coarse, view) {
+            let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
+            attempt = Attempt { outline_leaks: self.outline_leaks, is_final: true, ..Attempt::default() };
+            attempt.trace(fine, view);
         }
+        attempt.contours()
     }
 }
 
-/// What becomes of a target's component at some threshold; `Closed` says which of the closed components it is.
+/// What becomes of a target's component; `Closed` says which component it is.
 #[derive(Clone, Copy, PartialEq)]
 enum Fate {
     Outside,
     Leaks,
-    Closed(usize),
+    Closed(u32),
 }
 
-/// Whether the fate of some target may differ within the doubtful range of thresholds.
-///
-/// Components grow as the threshold falls. One that is closed and holds a single target at the low end therefore is so
-/// throughout; only the others have to be looked at from the high end too.
-fn is_in_doubt<M: Medium>(follower: &mut Follower<M>, held: &[bool], view: View<'_>) -> bool {
-    follower.begin();
-    let mut fates = |threshold: f64| {
-        fates(follower, held, threshold, view, |follower, start| follower.probe(start, threshold, view))
-    };
-    let low = fates(-DOUBT);
-    let alone = |(place, fate): (usize, &Fate)| match fate {
-        Fate::Outside => !held[place],
-        Fate::Leaks => false,
-        Fate::Closed(_) => low.iter().filter(|other| *other == fate).count() == 1,
-    };
-    !low.iter().enumerate().all(alone) && low != fates(DOUBT)
+/// The pattern as one lattice shows it.
+#[derive(Default)]
+struct Attempt {
+    outline_leaks: bool,
+    /// Whether to take what the lattice shows without doubting it.
+    is_final: bool,
+    rings: Vec<Vec<Point<f64>>>,
+    leaks: Vec<Vec<Point<f64>>>,
+    fates: Vec<Fate>,
 }
 
-fn trace_on<M: Medium>(follower: &mut Follower<M>, held: &[bool], outline_leaks: bool, view: View<'_>) -> Contours {
-    let (mut rings, mut leaks) = (Vec::new(), Vec::new());
-    let fates = fates(follower, held, 0.0, view, |follower, start| {
-        let component = follower.label(start, !outline_leaks, view);
-        match component {
-            Component::Closed => follower.follow(view, &mut rings),
-            Component::Leaks if outline_leaks => follower.follow(view, &mut leaks),
-            Component::Leaks => {}
+impl Attempt {
+    /// Traces the pattern. Returns whether some target's fate differs within the doubtful range of thresholds.
+    ///
+    /// Components grow as the threshold falls. One that is closed and holds a single target, and is still closed at the
+    /// low end, therefore is so throughout; only the others have to be looked at from the high end too.
+    fn trace<M: Medium>(&mut self, follower: &mut Follower<M>, view: View<'_>) -> bool {
+        follower.begin();
+        let mut shared = false;
+        for (&target, [x1, x2]) in view.snapshot.targets.iter().zip(&view.snapshot.target_inputs) {
+            let held = view.model.error(*x1, *x2) >= 0.0;
+            let start = if held { follower.start(target, 0.0, view) } else { None };
+            let fate = match start.map(|start| (start, follower.component_of(start))) {
+                None if held && !self.is_final && follower.start(target, -DOUBT, view).is_some() => return true,
+                None => Fate::Outside,
+                Some((start, known)) if !follower.is_current(known) => match self.explore(follower, start, view) {
+                    Some(fate) => fate,
+                    None => return true,
+                },
+                Some((_, known)) => {
+                    shared = true;
+                    if self.fates.contains(&Fate::Closed(known)) { Fate::Closed(known) } else { Fate::Leaks }
+                }
+            };
+            self.fates.push(fate);
         }
-        component
-    });
-    let enclosed = fates.iter().map(|fate| matches!(fate, Fate::Closed(_))).collect();
-    Contours { rings, leaks, enclosed }
+        let sure = self.is_final || !(shared || self.fates.contains(&Fate::Leaks));
+        !sure && !same_when_narrowed(follower, &self.fates, view)
+    }
+
+    /// The fate of the targets in the component of `start`, if that is not in doubt.
+    fn explore<M: Medium>(&mut self, follower: &mut Follower<M>, start: NodeIndex, view: View<'_>) -> Option<Fate> {
+        match follower.label(start, !self.outline_leaks, view) {
+            Component::Leaks => {
+                if self.outline_leaks {
+                    follower.follow(view, &mut self.leaks);
+                }
+                Some(Fate::Leaks)
+            }
+            Component::Closed => {
+                if !self.is_final && follower.widen(-DOUBT, view) == Component::Leaks {
+                    return None;
+                }
+                follower.follow(view, &mut self.rings);
+                Some(Fate::Closed(follower.last_component()))
+            }
+        }
+    }
+
+    fn contours(self) -> Contours {
+        let enclosed = self.fates.iter().map(|fate| matches!(fate, Fate::Closed(_))).collect();
+        Contours { rings: self.rings, leaks: self.leaks, enclosed }
+    }
 }
 
-/// The fate of each target, with `explore` called once for each component, from a node in it.
-fn fates<M: Medium>(
-    follower: &mut Follower<M>,
-    held: &[bool],
-    threshold: f64,
-    view: View<'_>,
-    mut explore: impl FnMut(&mut Follower<M>, NodeIndex) -> Component,
-) -> Vec<Fate> {
-    let mut explored = Vec::new();
-    let before = follower.components();
-    let targets = view.snapshot.targets.iter().zip(held);
-    let fates = targets.map(|(&target, &held)| {
-        let start = if held { follower.start(target, threshold, view) } else { None };
-        let Some(start) = start else { return Fate::Outside };
-        let known = follower.component_of(start).checked_sub(before + 1).map(usize::from);
-        let place = known.unwrap_or_else(|| {
-            explored.push(explore(follower, start));
-            explored.len() - 1
-        });
-        match explored.get(place) {
-            Some(Component::Closed) => Fate::Closed(place),
-            _ => Fate::Leaks,
+/// Whether the targets have the given fates, in the same components, at the high end of the doubtful thresholds too.
+fn same_when_narrowed<M: Medium>(follower: &mut Follower<M>, fates: &[Fate], view: View<'_>) -> bool {
+    let first = follower.last_component();
+    let mut narrowed: Vec<(u32, Fate)> = Vec::with_capacity(fates.len());
+    for (&target, &fate) in view.snapshot.targets.iter().zip(fates) {
+        if fate == Fate::Outside {
+            continue;
         }
-    });
-    fates.collect()
+        let Some(start) = follower.start(target, DOUBT, view) else { return false };
+        let known = follower.component_of(start);
+        if known <= first {
+            let closed = follower.probe(start, DOUBT, view) == Component::Closed;
+            if closed == (fate == Fate::Leaks) {
+                return false;
+            }
+            narrowed.push((follower.last_component(), fate));
+        } else if !narrowed.contains(&(known, fate)) {
+            return false;
+        }
+    }
+    // Two components at the high end that are one at the middle.
+    let split = |&(component, fate): &(u32, Fate)| {
+        fate != Fate::Leaks && narrowed.iter().any(|&(other, fate_of_it)| other != component && fate_of_it == fate)
+    };
+    !narrowed.iter().any(split)
 }

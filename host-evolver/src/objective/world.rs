@@ -1,10 +1,13 @@
 //! A scenario prepared for judging many models: morphogens on a lattice, which no model changes.
 
+use super::fine::FineLattice;
+use super::fitness::Terms;
 use super::lanes::{Lanes, WIDTH, concentration};
-use super::lattice::{Lattice, next_to_border};
+use super::lattice::{Lattice, Site};
 use firmware_sim::scenario::Scenario;
 use grn_core::field::Field;
 use grn_core::geometry::Point;
+use std::sync::Arc;
 
 /// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
 pub const LATTICE_STEP: f64 = 0.2;
@@ -18,8 +21,10 @@ pub struct Snapshot {
     pub targets: Vec<Point<f64>>,
     /// What the mother robots perceive of the walls, metres.
     pub obstacle_points: Vec<Point<f64>>,
-    /// x1 at each lattice node.
-    pub(super) x1: Vec<f64>,
+    /// (x1, x2) at each target.
+    pub(super) target_inputs: Vec<[f64; 2]>,
+    /// (x1, x2) at each lattice node.
+    pub(super) inputs: Vec<[f32; 2]>,
 }
 
 /// A scenario with its morphogens.
@@ -31,10 +36,10 @@ pub struct World {
     pub(super) lattice: Lattice,
     /// Signed distance to the nearest wall at each node, negative inside, at most [`FAR`].
     pub(super) clearance: Vec<f64>,
-    /// x2 at each node.
-    pub(super) x2: Vec<f64>,
-    /// Whether a node is in a wall or at the border.
-    pub(super) leaks: Vec<bool>,
+    /// What a pattern meets at each node.
+    pub(super) sites: Vec<Site>,
+    pub(super) fine: Arc<FineLattice>,
+    pub(super) terms: Terms,
 }
 
 impl World {
@@ -47,22 +52,35 @@ impl World {
     /// The same for other moments than the scenario's snapshots: where the targets are at each, metres.
     pub fn at(scenario: Scenario, moments: Vec<Vec<Point<f64>>>) -> World {
         let morphogen = scenario.morphogen();
-        let field = Field::new(morphogen.kernel, morphogen.target_width, morphogen.obstacle_width);
         let lattice = Lattice::over(scenario.region(), LATTICE_STEP);
-        let snapshots = moments.into_iter().map(|targets| Snapshot {
-            x1: lattice.nodes().map(|node| x1_at(&field, &targets, lattice.point(node))).collect(),
-            obstacle_points: scenario.obstacle_points(&targets),
-            targets,
-        });
-        let snapshots = snapshots.collect();
-        let mut world =
-            World { field, snapshots, clearance: Vec::new(), x2: Vec::new(), leaks: Vec::new(), lattice, scenario };
+        let mut world = World {
+            field: Field::new(morphogen.kernel, morphogen.target_width, morphogen.obstacle_width),
+            snapshots: Vec::new(),
+            clearance: Vec::new(),
+            sites: Vec::new(),
+            fine: Arc::new(FineLattice::over(scenario.region())),
+            terms: Terms::of(scenario.ring()),
+            lattice,
+            scenario,
+        };
         let points = world.lattice.nodes().map(|node| world.lattice.point(node));
         world.clearance = points.map(|point| world.clearance_at(point)).collect();
-        world.x2 = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
-        let leaks = |node| next_to_border(&world.lattice, node) || world.clearance[node] <= 0.0;
-        world.leaks = world.lattice.nodes().map(leaks).collect();
+        let site = |node| Site::of(&world.lattice, node, world.clearance[node]);
+        world.sites = world.lattice.nodes().map(site).collect();
+        let x2: Vec<f64> = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
+        let snapshots = moments.into_iter().map(|targets| world.snapshot(targets, &x2));
+        world.snapshots = snapshots.collect();
         world
+    }
+
+    fn snapshot(&self, targets: Vec<Point<f64>>, x2: &[f64]) -> Snapshot {
+        let x1 = self.lattice.nodes().map(|node| x1_at(&self.field, &targets, self.lattice.point(node)));
+        Snapshot {
+            inputs: x1.zip(x2).map(|(x1, &x2)| [x1 as f32, x2 as f32]).collect(),
+            target_inputs: targets.iter().map(|&target| inputs_at(self, &targets, target)).collect(),
+            obstacle_points: self.scenario.obstacle_points(&targets),
+            targets,
+        }
     }
 
     /// The scenario it was made from.
@@ -82,15 +100,11 @@ impl World {
 
     /// (x1, x2) at any point, exactly.
     pub fn inputs_at(&self, snapshot: &Snapshot, point: Point<f64>) -> [f64; 2] {
-        [self.x1_at(snapshot, point), self.x2_at(self.clearance_at(point))]
+        inputs_at(self, &snapshot.targets, point)
     }
 
     pub(super) fn clearance_at(&self, point: Point<f64>) -> f64 {
         self.scenario.walls().signed_distance(point).min(FAR)
-    }
-
-    pub(super) fn x1_at(&self, snapshot: &Snapshot, point: Point<f64>) -> f64 {
-        x1_at(&self.field, &snapshot.targets, point)
     }
 
     pub(super) fn x2_at(&self, clearance: f64) -> f64 {
@@ -122,6 +136,10 @@ impl World {
             self.lattice.beside(point).is_some_and(|node| self.clearance[node] - LATTICE_STEP > distance);
         !surely_clear && self.clearance_at(point) < distance
     }
+}
+
+fn inputs_at(world: &World, targets: &[Point<f64>], point: Point<f64>) -> [f64; 2] {
+    [x1_at(&world.field, targets, point), world.x2_at(world.clearance_at(point))]
 }
 
 fn x1_at(field: &Field<f64>, targets: &[Point<f64>], point: Point<f64>) -> f64 {

@@ -1,7 +1,6 @@
 //! Who is near: a uniform grid of robots, rebuilt each tick without allocating, and a fixed grid of wall edges.
 
 use crate::geometry::{Bounds, Edge, Walls, length_squared};
-use core::ops::Range;
 use grn_core::geometry::{Point, Vector};
 
 /// The most cells a side; a swarm spread wider gets larger cells.
@@ -37,19 +36,20 @@ impl Grid {
         }
     }
 
-    /// Sorts robots by where they are now; as many as the grid was made for.
-    pub fn rebuild(&mut self, positions: &[Point<f64>]) {
-        let Some(bounds) = Bounds::around(positions.iter().copied()) else { return };
-        let extent = bounds.high - bounds.low;
+    /// Sorts these robots, given by number and place, by where they are; at most as many as the grid was made for.
+    pub fn rebuild(&mut self, robots: impl Iterator<Item = (u16, Point<f64>)> + Clone) {
+        let bounds = Bounds::around(robots.clone().map(|(_, position)| position));
+        let Bounds { low, high } = bounds.unwrap_or(Bounds { low: Vector::ZERO, high: Vector::ZERO });
+        let extent = high - low;
         // Slightly larger than the reach, so that rounding cannot put a neighbour two cells away.
         let cell = (self.reach * 1.000_001).max(extent.x.max(extent.y) / (MAX_SIDE - 1) as f64);
-        self.low = bounds.low;
+        self.low = low;
         self.per_cell = 1.0 / cell;
         self.columns = (extent.x * self.per_cell) as usize + 1;
         self.rows = (extent.y * self.per_cell) as usize + 1;
         self.starts.clear();
         self.starts.resize(self.columns * self.rows + 2, 0);
-        for &position in positions {
+        for (_, position) in robots.clone() {
             let cell = self.cell(position);
             self.starts[cell + 2] += 1;
         }
@@ -58,11 +58,11 @@ impl Grid {
             sum += *start;
             *start = sum;
         }
-        for (robot, &position) in positions.iter().enumerate() {
+        for (robot, position) in robots {
             let next = self.cell(position) + 1;
             let place = self.starts[next] as usize;
             self.starts[next] += 1;
-            self.robots[place] = robot as u16;
+            self.robots[place] = robot;
             self.xs[place] = position.x;
             self.ys[place] = position.y;
         }
@@ -79,73 +79,34 @@ impl Grid {
         (column.min(self.columns - 1), row.min(self.rows - 1))
     }
 
-    /// The sorted order's ranges that hold everything within reach of `position`, a position the grid was built from.
-    fn around(&self, position: Point<f64>) -> impl Iterator<Item = Range<usize>> + '_ {
+    /// Calls `candidate(robot, squared distance)` for every robot within the grid's reach of `position`, and for others
+    /// near them.
+    #[inline]
+    pub fn around(&self, position: Point<f64>, mut candidate: impl FnMut(u16, f64)) {
+        // A position outside the grid counts as one in the nearest cell; what it reaches is in that cell or beside it.
         let (column, row) = self.column_row(position);
         let first = column.saturating_sub(1);
         let last = (column + 1).min(self.columns - 1);
-        (row.saturating_sub(1)..=(row + 1).min(self.rows - 1)).map(move |row| {
+        for row in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {
             let from = self.starts[row * self.columns + first] as usize;
-            from..self.starts[row * self.columns + last + 1] as usize
-        })
+            let range = from..self.starts[row * self.columns + last + 1] as usize;
+            let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
+            for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
+                let (dx, dy) = (x - position.x, y - position.y);
+                candidate(robot, dx * dx + dy * dy);
+            }
+        }
     }
 
-    /// Calls `found(robot, squared distance)` for every robot whose squared distance from `position` (a position the
-    /// grid was built from) is at most `limit`, which is at most the square of the grid's reach.
+    /// Calls `found(robot, squared distance)` for every robot whose squared distance from `position` is at most `limit`,
+    /// which is at most the square of the grid's reach.
     #[inline]
     pub fn within(&self, position: Point<f64>, limit: f64, mut found: impl FnMut(u16, f64)) {
-        for range in self.around(position) {
-            let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
-            for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
-                let (dx, dy) = (x - position.x, y - position.y);
-                let squared = dx * dx + dy * dy;
-                if squared <= limit {
-                    found(robot, squared);
-                }
+        self.around(position, |robot, squared| {
+            if squared <= limit {
+                found(robot, squared);
             }
-        }
-    }
-}
-
-/// Room for every neighbour that can be found, and one more; a power of two.
-pub const ROOM: usize = 256;
-
-/// A neighbour as a number that sorts by distance and then by robot: the squared distance's bits (nonnegative floats sort
-/// like their bits), of which the last eight give way to the robot's number, at most 255.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Neighbour(u64);
-
-impl Neighbour {
-    fn new(robot: u16, squared: f64) -> Self {
-        Neighbour((squared.to_bits() & !0xff) | u64::from(robot & 0xff))
-    }
-
-    /// Which robot.
-    pub fn robot(self) -> usize {
-        (self.0 & 0xff) as usize
-    }
-
-    /// Squared distance, to within a relative 2^-44, not rounded up.
-    pub fn squared(self) -> f64 {
-        f64::from_bits(self.0 & !0xff)
-    }
-}
-
-impl Grid {
-    /// Like [`within`](Grid::within), for fewer than [`ROOM`] robots, without a branch per candidate: writes the neighbours
-    /// found to the front of `found`, and returns how many there are.
-    pub fn collect_within(&self, position: Point<f64>, limit: f64, found: &mut [Neighbour; ROOM]) -> usize {
-        let mut count = 0;
-        for range in self.around(position) {
-            let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
-            for ((&x, &y), &robot) in xs.iter().zip(ys).zip(robots) {
-                let (dx, dy) = (x - position.x, y - position.y);
-                let squared = dx * dx + dy * dy;
-                found[count & (ROOM - 1)] = Neighbour::new(robot, squared);
-                count += usize::from(squared <= limit);
-            }
-        }
-        count
+        });
     }
 }
 
@@ -217,9 +178,11 @@ mod tests {
                 (0..120).map(|_| Vector::new(stream.symmetric() * extent, stream.symmetric() * extent / 3.0)).collect();
             let mut grid = Grid::new(reach, positions.len());
             for _ in 0..2 {
-                grid.rebuild(&positions);
+                grid.rebuild((0..).zip(positions.iter().copied()));
             }
-            for &here in &positions {
+            // From places in the grid and from outside it.
+            let outside = (0..40).map(|_| Vector::new(stream.symmetric() * 2.0 * extent, stream.symmetric() * extent));
+            for here in positions.iter().copied().chain(outside.collect::<Vec<_>>()) {
                 let mut found = Vec::new();
                 grid.within(here, reach * reach, |robot, squared| found.push((robot, squared)));
                 found.sort_by_key(|f| f.0);
@@ -227,16 +190,11 @@ mod tests {
                     (0..).zip(&positions).map(|(i, &p)| (i, length_squared(p - here))).collect();
                 let expected: Vec<_> = expected.into_iter().filter(|e| e.1 <= reach * reach).collect();
                 assert_eq!(found, expected);
-                let mut room = [Neighbour::default(); ROOM];
-                let count = grid.collect_within(here, reach * reach, &mut room);
-                let mut collected = room[..count].to_vec();
-                collected.sort_unstable();
-                found.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-                let robots = |neighbour: &Neighbour| neighbour.robot() as u16;
-                assert!(collected.iter().map(robots).eq(found.iter().map(|f| f.0)));
-                assert!(collected.iter().zip(&found).all(|(c, f)| (c.squared() - f.1).abs() <= f.1 * 1e-13));
             }
         }
+        let mut empty = Grid::new(0.5, 3);
+        empty.rebuild(core::iter::empty());
+        empty.within(Vector::ZERO, 0.25, |robot, _| panic!("{robot}"));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Broadcasts between robots: limited range, independent loss, the nearest first. Walls do not block it.
 
-use crate::grid::{Grid, Neighbour, ROOM};
+use crate::grid::Grid;
 use crate::random::{Component, Stream};
 use grn_core::geometry::Point;
-use grn_core::robot::Message;
-use grn_core::robot::percept::Percept;
+use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
+use grn_core::robot::percept::{MAX_HEARD, Percept};
+use grn_core::robot::{Message, Millimetres, ObstacleReport, TargetReport};
 use serde::{Deserialize, Serialize};
 
 /// How far the radio reaches and how much it loses.
@@ -24,94 +25,128 @@ impl Default for RadioConfig {
     }
 }
 
-/// Candidates looked at first: enough for a full inbox at usual losses.
-const USUAL_CANDIDATES: usize = 12;
-
 /// The ether: holds what was sent in the last tick and delivers it in the next.
 #[derive(Debug)]
 pub struct Radio {
     range_squared: f64,
-    loss: f64,
+    /// Below this draw a message is lost.
+    lost_below: u64,
     grid: Grid,
-    /// What is in the air now, by sender.
-    sent: Vec<Option<Message>>,
-    /// What will be in the next tick.
-    sending: Vec<Option<Message>>,
-    receivers: Vec<Receiver>,
-    candidates: Box<[Neighbour; ROOM]>,
+    sent: Ether,
+    sending: Ether,
+    /// Messages lost, by receiver.
+    losses: Vec<Stream>,
 }
 
+/// The broadcasts of one tick.
 #[derive(Debug)]
-struct Receiver {
-    losses: Stream,
-    /// A guess, from the last tick, of the squared distance within which there are enough senders. It saves time and
-    /// changes no result.
-    enough: f64,
+struct Ether {
+    senders: Vec<u16>,
+    /// By robot number; only those of `senders` are of this tick.
+    letters: Vec<Letter>,
 }
+
+/// A message in a form that is copied without looking at its parts.
+#[derive(Clone, Copy, Debug)]
+struct Letter {
+    sender: u8,
+    position: Millimetres,
+    target: Option<TargetReport>,
+    reports: usize,
+    obstacles: [ObstacleReport; MAX_REPORTED_OBSTACLES],
+}
+
+impl Letter {
+    const BLANK: Letter = Letter {
+        sender: 0,
+        position: Millimetres { x: 0, y: 0 },
+        target: None,
+        reports: 0,
+        obstacles: [ObstacleReport { position: Millimetres { x: 0, y: 0 }, age: 0 }; MAX_REPORTED_OBSTACLES],
+    };
+
+    fn of(message: &Message) -> Self {
+        let Message { sender, position, target, obstacles } = message;
+        let mut letter =
+            Letter { sender: *sender, position: *position, target: *target, reports: obstacles.len(), ..Letter::BLANK };
+        for (slot, report) in letter.obstacles.iter_mut().zip(obstacles) {
+            *slot = *report;
+        }
+        letter
+    }
+
+    fn message(&self) -> Message {
+        let obstacles = self.obstacles.into();
+        let mut message = Message { sender: self.sender, position: self.position, target: self.target, obstacles };
+        message.obstacles.truncate(self.reports);
+        message
+    }
+}
+
+/// A sender as a number that sorts by distance and then by number: the squared distance's bits (nonnegative floats sort
+/// like their bits), of which the last eight give way to the sender's number, at most 255.
+fn rank(sender: u16, squared: f64) -> u64 {
+    (squared.to_bits() & !0xff) | u64::from(sender & 0xff)
+}
+
+/// Ranks after every sender.
+const NOBODY: u64 = u64::MAX;
 
 impl Radio {
     /// An empty ether for this many robots.
     pub fn new(config: RadioConfig, seed: u64, robots: usize) -> Self {
-        let range_squared = config.range_m * config.range_m;
-        let receiver = |robot| Receiver { losses: Stream::new(seed, Component::Radio, robot), enough: range_squared };
+        let ether = || Ether { senders: Vec::with_capacity(robots), letters: vec![Letter::BLANK; robots] };
         Radio {
-            range_squared,
-            loss: config.loss,
+            range_squared: config.range_m * config.range_m,
+            lost_below: (config.loss * 4_294_967_296.0) as u64,
             grid: Grid::new(config.range_m, robots),
-            sent: vec![None; robots],
-            sending: vec![None; robots],
-            receivers: (0..robots).map(receiver).collect(),
-            candidates: Box::new([Neighbour::default(); ROOM]),
+            sent: ether(),
+            sending: ether(),
+            losses: (0..robots).map(|robot| Stream::new(seed, Component::Radio, robot)).collect(),
         }
     }
 
-    /// Says where the robots are when messages arrive.
+    /// Begins a tick: says where the robots are when messages arrive. What was sent in a tick that was broken off is void.
     pub fn locate(&mut self, positions: &[Point<f64>]) {
-        self.grid.rebuild(positions);
+        self.sending.senders.clear();
+        self.grid.rebuild(self.sent.senders.iter().map(|&sender| (sender, positions[usize::from(sender)])));
     }
 
-    /// What `sender` broadcasts in this tick, to be heard in the next.
-    pub fn send(&mut self, sender: usize, message: Option<Message>) {
-        self.sending[sender] = message;
+    /// What `sender` broadcasts in this tick, if anything, to be heard in the next; asked once a tick.
+    pub fn send(&mut self, sender: usize, message: Option<&Message>) {
+        if let Some(message) = message {
+            self.sending.senders.push(sender as u16);
+            self.sending.letters[sender] = Letter::of(message);
+        }
     }
 
     /// Ends a tick: what was sent in it can now be heard, and nothing older.
     pub fn tick_over(&mut self) {
         core::mem::swap(&mut self.sent, &mut self.sending);
-        self.sending.fill(None);
     }
 
-    /// Puts what `receiver` hears at `position` into its percept: senders in range, nearest first (equally near ones by
-    /// number), each lost or not by an independent draw, until the inbox is full.
+    /// Puts what `receiver` hears at `position` into its percept: of the messages from senders in range, each lost or not
+    /// by an independent draw, as many as the inbox holds, nearest first (equally near ones by number).
     pub fn deliver(&mut self, receiver: usize, position: Point<f64>, percept: &mut Percept) {
         percept.heard.clear();
-        let Receiver { losses, enough } = &mut self.receivers[receiver];
-        // All bits that a neighbour's number takes the place of are set: none of equal rank is cut off.
-        let near = f64::from_bits(enough.to_bits() | 0xff).min(self.range_squared);
-        // First the near senders; only if they do not fill the inbox, the others, which sort after them.
-        let mut done = 0;
-        for limit in [near, self.range_squared] {
-            let count = self.grid.collect_within(position, limit, &mut self.candidates);
-            let candidates = &mut self.candidates[..count];
-            candidates.sort_unstable();
-            *enough = match candidates.get(USUAL_CANDIDATES) {
-                Some(last) => last.squared() * 1.1,
-                None => limit * 2.0,
-            };
-            for sender in candidates.iter().skip(done).map(|candidate| candidate.robot()) {
-                if sender == receiver {
-                    continue;
-                }
-                let Some(message) = &self.sent[sender] else { continue };
-                if losses.unit() >= self.loss && percept.heard.push(message.clone()).is_ok() && percept.heard.is_full()
-                {
-                    return;
+        if self.sent.senders.is_empty() {
+            return;
+        }
+        let draws = self.losses[receiver].draws();
+        let mut nearest = [NOBODY; MAX_HEARD];
+        self.grid.around(position, |sender, squared| {
+            let lost = u64::from(draws.at(sender)) < self.lost_below;
+            let heard = (squared <= self.range_squared) & (usize::from(sender) != receiver) & !lost;
+            let mut moving = if heard { rank(sender, squared) } else { NOBODY };
+            if moving < nearest[MAX_HEARD - 1] {
+                for slot in &mut nearest {
+                    (*slot, moving) = (moving.min(*slot), moving.max(*slot));
                 }
             }
-            if limit >= self.range_squared {
-                return;
-            }
-            done = count;
+        });
+        for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
+            // As many as fit were chosen.
+            let _ = percept.heard.push(self.sent.letters[(rank & 0xff) as usize].message());
         }
     }
 }
@@ -120,19 +155,17 @@ impl Radio {
 mod tests {
     use super::*;
     use grn_core::geometry::Vector;
-    use grn_core::robot::Millimetres;
-    use grn_core::robot::percept::MAX_HEARD;
 
-    fn message(sender: usize) -> Option<Message> {
+    fn message(sender: usize) -> Message {
         let position = Millimetres { x: sender as i16, y: 0 };
-        Some(Message { sender: sender as u8, position, target: None, obstacles: Default::default() })
+        Message { sender: sender as u8, position, target: None, obstacles: Default::default() }
     }
 
     /// Who hears whom with robots on a line at these places (metres).
     fn heard(config: RadioConfig, places: &[f64], receiver: usize) -> Vec<u8> {
         let positions: Vec<Point<f64>> = places.iter().map(|&x| Vector::new(x, 0.0)).collect();
         let mut radio = Radio::new(config, 1, places.len());
-        (0..places.len()).for_each(|sender| radio.send(sender, message(sender)));
+        (0..places.len()).for_each(|sender| radio.send(sender, Some(&message(sender))));
         radio.tick_over();
         radio.locate(&positions);
         let mut percept = Percept::default();
@@ -162,8 +195,8 @@ mod tests {
     fn losses_are_as_frequent_as_asked_and_independent() {
         let positions = [0.0, 0.1, 0.2].map(|x| Vector::new(x, 0.0));
         let mut radio = Radio::new(RadioConfig { range_m: 0.7, loss: 0.3 }, 5, 3);
-        radio.send(1, message(1));
-        radio.send(2, message(2));
+        radio.send(1, Some(&message(1)));
+        radio.send(2, Some(&message(2)));
         radio.tick_over();
         radio.locate(&positions);
         let (mut one, mut two, mut both) = (0, 0, 0);
@@ -183,10 +216,10 @@ mod tests {
 
     #[test]
     fn a_crowd_with_heavy_losses_is_searched_to_the_end() {
-        // The shortcut's guess must not hide senders: half the messages get lost in a crowd of 40, and the inbox fills.
+        // Half the messages get lost in a crowd of 40, and the inbox still fills, with the nearest of the others.
         let positions: Vec<Point<f64>> = (0..40).map(|i| Vector::new(f64::from(i) * 0.01, 0.0)).collect();
         let mut radio = Radio::new(RadioConfig { range_m: 0.7, loss: 0.5 }, 6, 40);
-        (0..40).for_each(|sender| radio.send(sender, message(sender)));
+        (0..40).for_each(|sender| radio.send(sender, Some(&message(sender))));
         radio.tick_over();
         radio.locate(&positions);
         let mut percept = Percept::default();

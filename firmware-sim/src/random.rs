@@ -29,6 +29,11 @@ impl Stream {
         Stream(Pcg32::new(mixed(seed), mixed(stream)))
     }
 
+    /// A key for [`Draws`] of its own.
+    pub fn draws(&mut self) -> Draws {
+        Draws((u64::from(self.0.next_u32()) << 32) | u64::from(self.0.next_u32()))
+    }
+
     /// Uniform in [0, 1), a multiple of 2^-32.
     pub fn unit(&mut self) -> f64 {
         f64::from(self.0.next_u32()) * (1.0 / 4_294_967_296.0)
@@ -42,6 +47,17 @@ impl Stream {
     /// Uniform in [-1, 1).
     pub fn symmetric(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
+    }
+}
+
+/// Random numbers by index, in any order: the sequence of a SplitMix64 generator.
+#[derive(Clone, Copy, Debug)]
+pub struct Draws(u64);
+
+impl Draws {
+    /// Draw number `index`: uniform over all `u32`.
+    pub fn at(self, index: u16) -> u32 {
+        (mixed(self.0.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 32) as u32
     }
 }
 
@@ -66,6 +82,22 @@ mod tests {
         assert_eq!(draw(1, Component::Radio, 0), draw(1, Component::Radio, 0));
         let others = [draw(2, Component::Radio, 0), draw(1, Component::Sensors, 0), draw(1, Component::Radio, 1)];
         assert!(others.iter().all(|other| *other != draw(1, Component::Radio, 0)));
+    }
+
+    #[test]
+    fn draws_by_index_are_uniform_and_unrelated() {
+        let mut stream = Stream::new(3, Component::Radio, 0);
+        let n = 20_000;
+        let low = |draw: u32| u32::from(draw < 1 << 30);
+        let (mut first, mut second, mut both) = (0, 0, 0);
+        for _ in 0..n {
+            let draws = stream.draws();
+            let (a, b) = (low(draws.at(0)), low(draws.at(1)));
+            (first, second, both) = (first + a, second + b, both + a * b);
+        }
+        let share = |count: u32| f64::from(count) / f64::from(n);
+        assert!((share(first) - 0.25).abs() < 0.01 && (share(second) - 0.25).abs() < 0.01, "{first} {second}");
+        assert!((share(both) - 0.0625).abs() < 0.006, "{both}");
     }
 
     #[test]

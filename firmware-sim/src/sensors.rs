@@ -111,22 +111,29 @@ impl ProximityRing {
     }
 }
 
+/// The nearest whole number, halves up, for values that fit; ⌊value + 1/2⌋ without a call to `floor`.
+fn rounded(value: f64) -> i32 {
+    let above = value + 0.5;
+    let whole = above as i32;
+    whole - i32::from(f64::from(whole) > above)
+}
+
 /// A coordinate in metres as the nearest micrometre.
 pub(crate) fn micrometres(metres: f64) -> i32 {
-    (metres * 1e6 + 0.5).floor() as i32
+    rounded(metres * 1e6)
 }
 
 /// A component of a unit vector in units of 2^-14, as the nearest whole number.
 pub(crate) fn unit_q14(component: f64) -> i16 {
-    (component * 16384.0 + 0.5).floor() as i16
+    rounded(component * 16384.0) as i16
 }
 
 fn millimetres(point: Point<f64>, half_width: f64, noise: &mut Stream) -> Millimetres {
-    let mut rounded = |metres: f64| {
+    let mut perceived = |metres: f64| {
         let error = if half_width > 0.0 { half_width * noise.triangular() } else { 0.0 };
-        ((metres + error) * 1e3 + 0.5).floor() as i16
+        rounded((metres + error) * 1e3) as i16
     };
-    Millimetres { x: rounded(point.x), y: rounded(point.y) }
+    Millimetres { x: perceived(point.x), y: perceived(point.y) }
 }
 
 /// Puts own position and heading, as localisation gives them, into the percept.

@@ -280,7 +280,7 @@ impl<B: Brain> Swarm<B> {
 
     /// Finds the pairs near each other, and what every proximity ring sees.
     fn sense_neighbours(&mut self) {
-        self.grid.rebuild(&self.positions);
+        self.grid.rebuild((0..).zip(self.positions.iter().copied()));
         self.radio.locate(&self.positions);
         self.free.fill(ALL_FREE);
         self.near.clear();
@@ -320,7 +320,7 @@ impl<B: Brain> Swarm<B> {
         let fault = |source| StepError { robot, tick: self.tick, source };
         let command = self.brains[robot].tick(percept).map_err(fault)?;
         self.wheels[robot] = [command.left, command.right].map(|s| s.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
-        self.radio.send(robot, command.broadcast);
+        self.radio.send(robot, command.broadcast.as_ref());
         Ok(())
     }
 

@@ -2,8 +2,14 @@ use super::*;
 use crate::geometry::length_squared;
 use crate::radio::RadioConfig;
 use crate::sensors::Noise;
+use grn_core::blob::{Blob, FieldParameters, Gains};
+use grn_core::dynamics::Step;
+use grn_core::field::Kernel;
+use grn_core::motif::Motif;
+use grn_core::network::{Gene, Network, Source};
 use grn_core::robot::epuck2::BODY_RADIUS;
-use grn_core::robot::{Command, Message, Millimetres};
+use grn_core::robot::{Command, Controller, Message, Millimetres};
+use grn_core::scalar::{Q8_24, Scalar};
 
 const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");
 
@@ -32,6 +38,49 @@ impl Brain for Wanderer {
 
 fn wanderer(robot: usize) -> Wanderer {
     Wanderer { number: robot as u8, tick: 0, heard: Vec::new() }
+}
+
+/// The real controller.
+struct Real<S>(Controller<S>);
+
+impl<S: Scalar> Brain for Real<S> {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        Ok(self.0.tick(percept))
+    }
+}
+
+/// The bytes of 10 s of 12 robots under the real controller, with every noise on.
+fn real_bytes<S: Scalar>() -> Vec<u8> {
+    let gene = |motif, inputs: &[Source], theta| Gene { motif, inputs: inputs.iter().copied().collect(), theta };
+    let nand = gene(Motif::Nand, &[Source::X1, Source::X1], 0.8393);
+    let xnor = gene(Motif::Xnor, &[Source::Gene(0), Source::X2], 0.9256);
+    let blob: Blob = Blob {
+        network: Network::new(1.0, [nand, xnor]).unwrap(),
+        field: FieldParameters { kernel: Kernel::Gaussian, target_width: 1.5, obstacle_width: 0.9 },
+        level_fraction: 0.5,
+        scale: 0.25,
+        step: Step::DEFAULT,
+        time_scale: 4.0,
+        gains: Gains::default(),
+    };
+    let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
+    let controller = |robot| Real(Controller::<S>::new(&blob, robot as u8).unwrap());
+    let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
+    assert_eq!(swarm.run(320, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    swarm.trace().encode()
+}
+
+#[test]
+fn the_real_controller_gives_equal_bytes_in_every_run_and_after_decoding() {
+    for (bytes, again) in [(real_bytes::<f32>(), real_bytes::<f32>()), (real_bytes::<Q8_24>(), real_bytes::<Q8_24>())] {
+        assert_eq!(bytes, again);
+        let trace = Trace::decode(&bytes).unwrap();
+        assert_eq!(trace.encode(), bytes);
+        assert_eq!(trace.len(), 321);
+        let frames: Vec<_> = trace.frames().collect();
+        let moved = |robot: usize| frames[0].robots[robot].position_um != frames[320].robots[robot].position_um;
+        assert!((0..12).all(moved), "every robot hears of the target and drives");
+    }
 }
 
 /// Drives straight on.

@@ -1,7 +1,7 @@
 //! What a robot knows of the world: its own sightings and what others broadcast, with their age.
 
 use super::epuck2::TICKS_PER_SECOND;
-use super::message::{MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
+use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
@@ -21,6 +21,9 @@ const OBSTACLE_AGE_UNIT: u32 = 8;
 const FORGET_OBSTACLE_UNITS: u8 = (10 * TICKS_PER_SECOND as u32 / OBSTACLE_AGE_UNIT) as u8;
 
 /// Everything known, in world metres, extrapolated to the current tick.
+///
+/// Who is nearer is decided in whole millimetres, which messages are in anyway: alike for every number type, and without
+/// a square root for each of the many points that arrive in a tick.
 #[derive(Clone, Debug)]
 pub struct Knowledge<S> {
     targets: Vec<KnownTarget<S>, MAX_TARGETS>,
@@ -53,7 +56,69 @@ pub struct Neighbour<S> {
     robot: u8,
     /// Where it was when last heard.
     pub position: Point<S>,
+    place: Millimetres,
     age: u8,
+}
+
+/// What every obstacle point that arrives in a tick is compared with. There are dozens a tick, so the comparisons are over
+/// whole arrays and without branches.
+struct Comparison {
+    here: Millimetres,
+    /// Coordinates of the known points, packed; those from `known` on mean nothing.
+    keys: [u32; MAX_OBSTACLES],
+    known: usize,
+    /// Squared distances of the known points from here, mm².
+    squares: [u64; MAX_OBSTACLES],
+    farthest: usize,
+    largest: u64,
+}
+
+impl Comparison {
+    fn new(obstacles: &[KnownObstacle], here: Millimetres) -> Self {
+        let (keys, squares) = ([0; MAX_OBSTACLES], [0; MAX_OBSTACLES]);
+        let mut comparison = Comparison { here, keys, known: 0, squares, farthest: 0, largest: 0 };
+        for (index, obstacle) in obstacles.iter().enumerate() {
+            comparison.put(index, obstacle.position);
+        }
+        comparison.known = obstacles.len();
+        comparison.find_farthest();
+        comparison
+    }
+
+    fn key(position: Millimetres) -> u32 {
+        (u32::from(position.x as u16) << 16) | u32::from(position.y as u16)
+    }
+
+    fn put(&mut self, index: usize, position: Millimetres) {
+        if let (Some(key), Some(square)) = (self.keys.get_mut(index), self.squares.get_mut(index)) {
+            *key = Self::key(position);
+            *square = squared_distance(position, self.here);
+        }
+    }
+
+    fn find_farthest(&mut self) {
+        (self.farthest, self.largest) = largest_of(self.squares.into_iter());
+    }
+
+    /// Which known point is exactly here, if any.
+    fn position_of(&self, position: Millimetres) -> Option<usize> {
+        let key = Self::key(position);
+        let bits =
+            self.keys.iter().zip(0_u32..).fold(0, |bits, (&known, index)| bits | (u32::from(known == key) << index));
+        let index = bits.trailing_zeros() as usize;
+        (index < self.known).then_some(index)
+    }
+}
+
+/// The first of the largest numbers: its index and itself; (0, 0) for none.
+fn largest_of(numbers: impl Iterator<Item = u64>) -> (usize, u64) {
+    numbers.enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap_or((0, 0))
+}
+
+/// The squared distance between two places, mm².
+fn squared_distance(a: Millimetres, b: Millimetres) -> u64 {
+    let square = |a: i16, b: i16| u64::from(a.abs_diff(b)) * u64::from(a.abs_diff(b));
+    square(a.x, b.x) + square(a.y, b.y)
 }
 
 pub(super) fn metres<S: Scalar>(position: Millimetres) -> Point<S> {
@@ -95,11 +160,22 @@ impl<S: Scalar> Knowledge<S> {
         for sighting in &percept.targets {
             self.see_target(*sighting);
         }
+        if percept.obstacles.is_empty() && percept.heard.is_empty() {
+            return;
+        }
+        let here = millimetres(here);
+        let mut comparison = Comparison::new(&self.obstacles, here);
         for &position in &percept.obstacles {
-            self.learn_obstacle(KnownObstacle { position, age: 0 }, here);
+            self.learn_obstacle(KnownObstacle { position, age: 0 }, &mut comparison);
         }
         for message in &percept.heard {
-            self.hear(message, here);
+            if let Some(report) = &message.target {
+                self.hear_of_target(report);
+            }
+            for &ObstacleReport { position, age } in &message.obstacles {
+                self.learn_obstacle(KnownObstacle { position, age }, &mut comparison);
+            }
+            self.meet(message.sender, message.position, here);
         }
     }
 
@@ -113,14 +189,18 @@ impl<S: Scalar> Knowledge<S> {
         for neighbour in &mut self.neighbours {
             neighbour.age = neighbour.age.saturating_add(1);
         }
-        self.neighbours.retain(|neighbour| neighbour.age <= FORGET_NEIGHBOUR_TICKS);
+        if self.neighbours.iter().any(|neighbour| neighbour.age > FORGET_NEIGHBOUR_TICKS) {
+            self.neighbours.retain(|neighbour| neighbour.age <= FORGET_NEIGHBOUR_TICKS);
+        }
         if self.tick.is_multiple_of(OBSTACLE_AGE_UNIT) {
             for obstacle in &mut self.obstacles {
                 obstacle.age = obstacle.age.saturating_add(1);
             }
-            self.obstacles.retain(|obstacle| obstacle.age <= FORGET_OBSTACLE_UNITS);
-            self.obstacle_points.clear();
-            self.obstacle_points.extend(self.obstacles.iter().map(|obstacle| metres(obstacle.position)));
+            if self.obstacles.iter().any(|obstacle| obstacle.age > FORGET_OBSTACLE_UNITS) {
+                self.obstacles.retain(|obstacle| obstacle.age <= FORGET_OBSTACLE_UNITS);
+                self.obstacle_points.clear();
+                self.obstacle_points.extend(self.obstacles.iter().map(|obstacle| metres(obstacle.position)));
+            }
         }
     }
 
@@ -142,20 +222,11 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    fn hear(&mut self, message: &Message, here: Point<S>) {
-        if let Some(report) = &message.target {
-            self.hear_of_target(report);
-        }
-        for report in &message.obstacles {
-            self.learn_obstacle(KnownObstacle { position: report.position, age: report.age }, here);
-        }
-        self.meet(message.sender, metres(message.position), here);
-    }
-
     /// The fresher of report and own knowledge stands.
     fn hear_of_target(&mut self, report: &TargetReport) {
         let age = report.age.saturating_add(1);
-        if age > FORGET_TARGET_TICKS {
+        let known = self.targets.iter_mut().find(|known| known.target == report.target);
+        if age > FORGET_TARGET_TICKS || known.as_ref().is_some_and(|known| age >= known.age) {
             return;
         }
         let [east, north] = report.velocity.map(|mm| S::from_ratio(i32::from(mm), 1000));
@@ -165,54 +236,57 @@ impl<S: Scalar> Knowledge<S> {
             velocity: Vector::new(east, north),
             age,
         };
-        match self.targets.iter_mut().find(|known| known.target == told.target) {
-            Some(known) if told.age < known.age => *known = told,
-            Some(_) => {}
+        match known {
+            Some(known) => *known = told,
             None => {
                 let _ = self.targets.push(told);
             }
         }
     }
 
-    fn learn_obstacle(&mut self, told: KnownObstacle, here: Point<S>) {
+    fn learn_obstacle(&mut self, told: KnownObstacle, comparison: &mut Comparison) {
         if told.age > FORGET_OBSTACLE_UNITS {
             return;
         }
-        if let Some(known) = self.obstacles.iter_mut().find(|known| known.position == told.position) {
-            known.age = known.age.min(told.age);
+        if let Some(index) = comparison.position_of(told.position) {
+            if let Some(known) = self.obstacles.get_mut(index) {
+                known.age = known.age.min(told.age);
+            }
             return;
         }
-        let point = metres(told.position);
-        if self.obstacles.push(told).is_ok() {
-            let _ = self.obstacle_points.push(point);
+        let index = if self.obstacles.push(told).is_ok() {
+            let _ = self.obstacle_points.push(metres(told.position));
+            comparison.known += 1;
+            self.obstacles.len() - 1
+        } else if squared_distance(told.position, comparison.here) < comparison.largest {
+            let index = comparison.farthest;
+            if let (Some(known), Some(point)) = (self.obstacles.get_mut(index), self.obstacle_points.get_mut(index)) {
+                *known = told;
+                *point = metres(told.position);
+            }
+            index
+        } else {
             return;
-        }
-        let distances = self.obstacle_points.iter().map(|&known| (known - here).length()).enumerate();
-        let Some((farthest, distance)) = distances.reduce(|a, b| if b.1 > a.1 { b } else { a }) else { return };
-        if (point - here).length() < distance
-            && let (Some(known), Some(known_point)) =
-                (self.obstacles.get_mut(farthest), self.obstacle_points.get_mut(farthest))
-        {
-            *known = told;
-            *known_point = point;
-        }
+        };
+        comparison.put(index, told.position);
+        comparison.find_farthest();
     }
 
-    fn meet(&mut self, robot: u8, position: Point<S>, here: Point<S>) {
-        let met = Neighbour { robot, position, age: 0 };
+    fn meet(&mut self, robot: u8, place: Millimetres, here: Millimetres) {
+        let met = || Neighbour { robot, position: metres(place), place, age: 0 };
         if let Some(known) = self.neighbours.iter_mut().find(|known| known.robot == robot) {
-            *known = met;
+            *known = met();
             return;
         }
-        if self.neighbours.push(met).is_ok() {
+        if !self.neighbours.is_full() {
+            let _ = self.neighbours.push(met());
             return;
         }
-        let distance = |neighbour: &Neighbour<S>| (neighbour.position - here).length();
-        let farthest = self.neighbours.iter_mut().reduce(|a, b| if distance(b) > distance(a) { b } else { a });
-        if let Some(farthest) = farthest
-            && distance(&met) < distance(farthest)
+        let (farthest, square) = largest_of(self.neighbours.iter().map(|known| squared_distance(known.place, here)));
+        if squared_distance(place, here) < square
+            && let Some(farthest) = self.neighbours.get_mut(farthest)
         {
-            *farthest = met;
+            *farthest = met();
         }
     }
 

@@ -2,13 +2,16 @@
 //!
 //! [`Arithmetic`] is what a regulation function needs: ring operations and the sigmoid. [`Scalar`] adds what fields,
 //! patterns and the robot need. `f32` and [`Q8_24`] run on robots; `f64` is the host's reference; [`Dual`] carries a
-//! gradient with respect to the two inputs through the same generic code.
+//! gradient with respect to the two inputs through the same generic code, and [`Stages`] the stages of an integration step.
 
 mod dual;
+mod isqrt;
 mod q8_24;
+mod stages;
 
 pub use dual::Dual;
 pub use q8_24::Q8_24;
+pub use stages::Stages;
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};

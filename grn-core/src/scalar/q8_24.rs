@@ -1,5 +1,6 @@
 //! Q8.24: 8 integer bits (signed), 24 fractional bits, saturating.
 
+use super::isqrt::isqrt;
 use super::{Arithmetic, Scalar};
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use fixed::types::I8F24;
@@ -155,7 +156,11 @@ impl Scalar for Q8_24 {
         Self::from_f64(f64::from(value))
     }
     fn from_f64(value: f64) -> Self {
-        Self::saturating_from_wide(libm::round(value * f64::from(ONE_BITS)) as i64)
+        // Halves away from zero, in steps that a compiler evaluates when the value is a constant.
+        let scaled = value * f64::from(ONE_BITS);
+        let whole = scaled as i64;
+        let rest = scaled - whole as f64;
+        Self::saturating_from_wide(whole.saturating_add(i64::from(rest >= 0.5) - i64::from(rest <= -0.5)))
     }
     fn from_ratio(numerator: i32, denominator: i32) -> Self {
         let wide = i64::from(numerator) << FRACTION_BITS;
@@ -196,11 +201,11 @@ impl Scalar for Q8_24 {
     }
     fn sqrt(self) -> Self {
         let wide = (self.to_bits().max(0) as u64) << FRACTION_BITS;
-        Self::from_bits(wide.isqrt() as i32)
+        Self::from_bits(isqrt(wide) as i32)
     }
     fn hypot(self, other: Self) -> Self {
         let square = |v: Self| i64::from(v.to_bits()).pow(2) as u64;
-        Self::saturating_from_wide((square(self) + square(other)).isqrt() as i64)
+        Self::saturating_from_wide(i64::from(isqrt(square(self) + square(other))))
     }
     fn halved(self, exponent: u8) -> Self {
         let exponent = u32::from(exponent.min(30));

@@ -60,11 +60,11 @@ pub struct Gains {
     pub coupling: f32,
     /// c: decay of p, 1/s.
     pub decay: f32,
-    /// k: production of p by the saturated pattern error f(z), m/s².
+    /// k: production of p by the saturated distance to the pattern f(z), 1/s².
     pub drive: f32,
     /// b: production of p by the repulsion D from neighbours, m/s².
     pub repulsion: f32,
-    /// How far repulsion reaches, world metres.
+    /// How far repulsion reaches, in radii of the pattern around a lone target in free space.
     pub repulsion_range: f32,
     /// Highest speed asked of the body, world metres per second.
     pub cruise: f32,
@@ -77,10 +77,10 @@ impl Default for Gains {
         Gains {
             attraction: 1.0,
             coupling: 1.0,
-            decay: 2.0,
+            decay: 8.0,
             drive: 0.0,
-            repulsion: 0.5,
-            repulsion_range: 0.4,
+            repulsion: 8.0,
+            repulsion_range: 1.3,
             cruise: 0.12,
             turn: 5.0,
         }

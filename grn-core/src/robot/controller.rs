@@ -2,7 +2,7 @@
 
 use super::drive::{Drive, heading, reflex};
 use super::epuck2::TICKS_PER_SECOND;
-use super::knowledge::Knowledge;
+use super::knowledge::{Knowledge, KnownTarget};
 use super::message::Message;
 use super::motion::{Bearing, Motion};
 use super::percept::{Command, Millimetres, Percept};
@@ -118,16 +118,18 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let here = Vector::new(east, north);
         self.knowledge.update(percept, here);
         let heading = heading(percept.heading);
-        let wanted = self.wanted_velocity(here) + reflex(&percept.proximity, heading, self.reflex);
+        let wanted = self.wanted_velocity(here, percept) + reflex(&percept.proximity, heading, self.reflex);
         let (left, right) = self.drive.wheels(wanted, heading);
         Command { left, right, broadcast: self.broadcast(percept) }
     }
 
-    fn wanted_velocity(&mut self, here: Point<S>) -> Vector<S> {
+    fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept) -> Vector<S> {
         let targets = self.knowledge.targets();
-        let distance = |position: Point<S>| (position - here).length();
-        let nearest = targets.iter().reduce(|a, b| if distance(b.position) < distance(a.position) { b } else { a });
+        let distance = |target: &KnownTarget<S>| (target.position - here).length();
+        let nearest = targets.iter().reduce(|a, b| if distance(b) < distance(a) { b } else { a });
         let Some(&nearest) = nearest else { return Vector::ZERO };
+        let own = self.own_target(percept).and_then(|own| targets.iter().find(|target| target.target == own));
+        let own = own.copied().unwrap_or(nearest);
         let known = targets.iter().map(|target| target.position);
         let morphogens = self.field.at(here, known, self.knowledge.obstacles());
         for _ in 0..self.steps_per_tick {
@@ -137,7 +139,16 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             error: self.pattern.error(self.expression.morphogen(&self.network)),
             gradient: self.pattern.error_gradient(&self.network, &morphogens),
         };
-        self.motion.velocity(here, &bearing, &nearest, self.knowledge.neighbours())
+        // The pattern here is that around another target: it does not tell the way to the own one.
+        let bearing = (own.target == nearest.target).then_some(&bearing);
+        self.motion.velocity(here, bearing, &own, self.knowledge.neighbours())
+    }
+
+    /// A robot accompanies the nearest target. Those that see several themselves share them out by their own numbers:
+    /// if all mother robots followed one target, the others would get out of sight and lose their robots.
+    fn own_target(&self, percept: &Percept) -> Option<u8> {
+        let turn = usize::from(self.robot).checked_rem(percept.targets.len())?;
+        percept.targets.get(turn).map(|sighting| sighting.target)
     }
 
     fn broadcast(&self, percept: &Percept) -> Option<Message> {

@@ -1,6 +1,6 @@
 //! From a wanted velocity to wheel speeds, and the reflex away from what is close.
 
-use super::epuck2::{AXLE, MAX_WHEEL_SPEED, METRES_PER_STEP, PROXIMITY_RANGE, PROXIMITY_SENSORS};
+use super::epuck2::{AXLE, MAX_WHEEL_SPEED, METRES_PER_STEP, PROXIMITY_SENSORS};
 use crate::geometry::Vector;
 use crate::scalar::Scalar;
 
@@ -25,14 +25,17 @@ pub fn heading<S: Scalar>([cos, sin]: [i16; 2]) -> Vector<S> {
     Vector::new(unit(cos), unit(sin))
 }
 
+/// Free distance, in 0.1 mm, below which the reflex acts. Less than the 5 cm that sensors reach: robots side by side on a
+/// crowded ring would push each other off it, because eight rays do not feel the same on both sides.
+const REFLEX_RANGE: i32 = 300;
+
 /// The reflex: a velocity away from what the proximity sensors feel, at most about `strength` per sensor.
 ///
-/// A sensor with free distance r in front of it, r below the 5 cm range R, pushes with (1 - r/R)².
+/// A sensor with free distance r in front of it, r below R = [`REFLEX_RANGE`], pushes with (1 - r/R)².
 pub fn reflex<S: Scalar>(proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>, strength: S) -> Vector<S> {
-    let range = (PROXIMITY_RANGE * 10_000.0) as i32;
-    let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < range);
+    let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < REFLEX_RANGE);
     felt.fold(Vector::ZERO, |sum, (&distance, (cos, sin))| {
-        let closeness = S::from_ratio(range - i32::from(distance), range);
+        let closeness = S::from_ratio(REFLEX_RANGE - i32::from(distance), REFLEX_RANGE);
         let direction = heading * unit::<S>(cos) + heading.turned_left() * unit::<S>(sin);
         sum - direction * (strength * closeness * closeness)
     })

@@ -36,7 +36,8 @@ pub struct Knowledge<S> {
 /// A target as this robot knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownTarget<S> {
-    target: u8,
+    /// Which target.
+    pub target: u8,
     /// Expected position now.
     pub position: Point<S>,
     /// Estimated velocity, metres per second.

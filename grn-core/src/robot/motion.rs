@@ -1,17 +1,34 @@
 //! The motion law: where the robot wants to go, as a velocity in the world.
 //!
-//! This is the field's layer-2 GRN (Guo, Meng and Jin), with the robot's velocity dg/dt relative to the target it
-//! accompanies:
+//! This is the field's layer-2 GRN (Guo, Meng and Jin) for a robot at g, with the target it accompanies moving at v:
 //!
 //! ```text
-//! dg/dt = -a z + m p          dp/dt = -c p - k f(z) + b D          f(z) = z / (1 + |z| / r)
+//! dg/dt = v - a z + m p          dp/dt = -c p - k f(z) + b D          f(z) = z / (1 + |z| / r)
 //! ```
 //!
-//! z is the gradient of half the squared distance to the pattern, that is, the vector from the nearest candidate point
-//! to the robot, estimated by a Newton step on the pattern error; D is the repulsion from neighbours. On the pattern
-//! only D's part along the pattern counts, which spreads the robots evenly; f is a sigmoid that saturates at the ring's
-//! radius r, algebraic so that it is the same bits everywhere. (The sign of k f(z) is chosen so that both genes pull
-//! towards the pattern.)
+//! | symbol | unit | what it is |
+//! |---|---|---|
+//! | g, v | m, m/s | position of the robot; estimated velocity of its target |
+//! | z | m | from the nearest point of the pattern to the robot, at most r/2 long |
+//! | r | m | radius of the pattern around a lone target in free space |
+//! | p | m/s | the motion protein |
+//! | D | 1 | repulsion from neighbours, along the pattern only |
+//! | a, c | 1/s | attraction, decay |
+//! | m | 1 | coupling |
+//! | k, b | 1/s², m/s² | drive, repulsion |
+//!
+//! Three things differ from the published law.
+//! - v is fed forward: without it robots trail the pattern by v/a.
+//! - D = Σ t sign(t · (g - gⱼ)) (1 - dⱼ/R)² over neighbours j at distance dⱼ < R, with t a unit tangent of the pattern
+//!   where the robot is and R = `repulsion_range` · r. Repulsion in the whole plane holds late robots in a second row
+//!   outside the first; along the tangent alone it spreads the robots evenly and makes room for whoever pushes in. Its
+//!   sign, not its share t · (g - gⱼ) / dⱼ, counts, so that robots one behind the other part before they meet.
+//! - k f(z) has the sign with which both genes pull towards the pattern; f is a sigmoid that saturates at r, algebraic so
+//!   that it is the same bits everywhere. With the pull -a z alone (k = 0, the default) robots settle just as near.
+//!
+//! z is a Newton step on the pattern error φ: φ ∇φ / |∇φ|². Outside, a step longer than r/2 or one that leads away from
+//! the target is not believed: there ∇φ is small, down to a few units of Q8.24, and obstacles may outweigh the target.
+//! The robot then heads for its target until the pattern can be sensed.
 
 use super::knowledge::{KnownTarget, Neighbour};
 use crate::blob::Gains;
@@ -25,6 +42,14 @@ pub struct Bearing<S> {
     pub error: S,
     /// ∇φ, 1/m.
     pub gradient: Vector<S>,
+}
+
+/// Where the pattern is, seen from the robot.
+struct Way<S> {
+    /// -z: the way to the nearest point of the pattern, metres.
+    to_pattern: Vector<S>,
+    /// Across the pattern, of any length.
+    normal: Vector<S>,
 }
 
 /// The state of the motion law and its gains in the controller's number type.
@@ -51,7 +76,7 @@ impl<S: Scalar> Motion<S> {
             decay: S::from_f32(gains.decay),
             drive: S::from_f32(gains.drive),
             repulsion: S::from_f32(gains.repulsion),
-            range: S::from_f32(gains.repulsion_range),
+            range: S::from_f32(gains.repulsion_range) * ring_radius,
             cruise: S::from_f32(gains.cruise),
             ring_radius,
             tick,
@@ -59,22 +84,19 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// The velocity to move at, metres per second, at most the cruise speed.
+    /// The velocity to move at, metres per second, at most the cruise speed. Without a bearing it leads to the target.
     pub fn velocity(
         &mut self,
         here: Point<S>,
-        bearing: &Bearing<S>,
+        bearing: Option<&Bearing<S>>,
         target: &KnownTarget<S>,
         neighbours: &[Neighbour<S>],
     ) -> Vector<S> {
-        let to_pattern = self.way_to_pattern(here, bearing, target.position);
-        let along = bearing.gradient.turned_left().direction();
-        let repulsion = self.repulsion_from(here, neighbours);
-        let near = to_pattern.length() < self.ring_radius.halved(2);
-        let repulsion = match along {
-            Some(along) if near => along * repulsion.dot(along),
-            _ => repulsion,
-        };
+        let to_target = target.position - here;
+        let Way { to_pattern, normal } = bearing
+            .and_then(|bearing| self.way_to_pattern(bearing, to_target))
+            .unwrap_or(Way { to_pattern: to_target.limited(self.trust()), normal: to_target });
+        let repulsion = self.repulsion_from(here, normal, neighbours);
         let saturation = S::ONE + to_pattern.length() / self.ring_radius;
         let production = to_pattern * (self.drive / saturation) + repulsion * self.repulsion;
         self.protein = self.protein + (production - self.protein * self.decay) * self.tick;
@@ -82,27 +104,28 @@ impl<S: Scalar> Motion<S> {
         velocity.limited(self.cruise)
     }
 
-    /// -z: the way to the nearest candidate point, or towards the target where the pattern cannot be sensed.
-    fn way_to_pattern(&self, here: Point<S>, bearing: &Bearing<S>, target: Point<S>) -> Vector<S> {
-        let to_target = target - here;
-        let outside = bearing.error < S::ZERO;
-        match newton_step(bearing.error, bearing.gradient) {
-            Some(step) if !outside || step.dot(to_target) > S::ZERO => step.limited(self.ring_radius.halved(1)),
-            _ if outside => to_target.limited(self.ring_radius.halved(1)),
-            _ => Vector::ZERO,
-        }
+    /// r/2: the longest Newton step that is believed.
+    fn trust(&self) -> S {
+        self.ring_radius.halved(1)
     }
 
-    /// D: for each neighbour at distance d < R the unit vector away from it times (1 - d/R)².
-    fn repulsion_from(&self, here: Point<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
-        neighbours.iter().fold(Vector::ZERO, |sum, neighbour| {
+    /// The way along the gradient of the pattern error; `None` where it does not tell the way.
+    fn way_to_pattern(&self, bearing: &Bearing<S>, to_target: Vector<S>) -> Option<Way<S>> {
+        let step = newton_step(bearing.error, bearing.gradient)?;
+        let inside = bearing.error >= S::ZERO;
+        let believed = inside || (step.dot(to_target) > S::ZERO && step.length() < self.trust());
+        believed.then(|| Way { to_pattern: step.limited(self.trust()), normal: bearing.gradient })
+    }
+
+    /// D: along the pattern, away from each neighbour at distance d < R, (1 - d/R)² strong.
+    fn repulsion_from(&self, here: Point<S>, normal: Vector<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
+        let Some(tangent) = normal.turned_left().direction() else { return Vector::ZERO };
+        let along = neighbours.iter().fold(S::ZERO, |sum, neighbour| {
             let offset = here - neighbour.position;
-            let distance = offset.length();
-            if distance >= self.range || distance <= S::ZERO {
-                return sum;
-            }
-            let closeness = S::ONE - distance / self.range;
-            sum + offset * (closeness * closeness / distance)
-        })
+            let closeness = (S::ONE - offset.length() / self.range).max(S::ZERO);
+            let strength = closeness * closeness;
+            if offset.dot(tangent) < S::ZERO { sum - strength } else { sum + strength }
+        });
+        tangent * along
     }
 }

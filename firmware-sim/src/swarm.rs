@@ -103,7 +103,7 @@ impl<B> fmt::Debug for Swarm<B> {
 }
 
 impl<B: Brain> Swarm<B> {
-    /// The scenario's world at the configured scale, with robots at random places around the first target's start, each
+    /// The scenario's world at the configured scale, with robots at random places behind the first target's start, each
     /// with the brain that `brain` gives for its number.
     ///
     /// # Errors

@@ -10,26 +10,33 @@ use grn_core::robot::epuck2::BODY_RADIUS;
 
 /// Inner and outer radius of the ring in which robots start, in multiples of the scenario's `d_max`.
 const START_RING: [f64; 2] = [0.3, 1.6];
+/// The share of its path by which a target shows which way it goes.
+const FIRST_STRETCH: f64 = 1e-3;
 /// Free space between bodies and around walls at the start, metres.
 const CLEARANCE: f64 = 0.005;
 /// Misses in a row after which the ring is made a tenth wider.
 const PATIENCE: u32 = 200;
 
-/// `count` robots at random places, with random headings, in a ring around the first target's start: inside the region,
-/// clear of walls and of each other. The ring grows when they do not fit. `None` when even the whole region, at random,
-/// has no room.
+/// `count` robots at random places, with random headings, behind the first target's start: in the half of a ring around it
+/// that lies against its way, so that the swarm has yet to go around it; inside the region, clear of walls and of each
+/// other. The ring grows when they do not fit, and closes when the half plane is full. `None` when even the whole region,
+/// at random, has no room.
 pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec<Pose>> {
     let mut stream = Stream::new(seed, Component::Placement, 0);
     let centre = world.targets_at(0.0).first().copied()?;
+    let way = world.targets_at(FIRST_STRETCH).first().copied()? - centre;
     let [inner, mut outer] = START_RING.map(|share| share * world.ring().d_max);
     let region = world.region();
     let region_reach = 2.0 * (region[0] + region[1] + centre.length());
     let mut poses: Vec<Pose> = Vec::with_capacity(count);
     let mut misses = 0;
+    let mut only_behind = true;
     while poses.len() < count {
         // Uniform by area.
         let radius = (inner * inner + stream.unit() * (outer * outer - inner * inner)).sqrt();
-        let position = centre + turned(stream.unit()) * radius;
+        let bearing = turned(stream.unit());
+        let behind = if only_behind && bearing.dot(way) > 0.0 { -bearing } else { bearing };
+        let position = centre + behind * radius;
         let heading = turned(stream.unit());
         if free(world, &poses, position) {
             poses.push(Pose { position, heading });
@@ -41,7 +48,11 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
             misses = 0;
             outer *= 1.1;
             if outer > region_reach {
-                return None;
+                if !only_behind {
+                    return None;
+                }
+                only_behind = false;
+                outer = START_RING[1] * world.ring().d_max;
             }
         }
     }

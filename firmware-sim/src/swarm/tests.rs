@@ -138,6 +138,7 @@ fn robots_start_free_and_near_the_target() {
             assert!(positions[..i].iter().all(|&q| length_squared(p - q) > 4.0 * BODY_RADIUS * BODY_RADIUS));
             let distance = (p - swarm.targets()[0]).length() / (2.0 * scale);
             assert!(distance >= 0.3 && (robots > 30 || distance <= 1.6), "{distance}");
+            assert!(robots > 30 || p.x <= swarm.targets()[0].x, "the target goes east, robots start west of it");
         }
     }
     let full = SwarmConfig { robots: 250, scale: 0.03, ..SwarmConfig::default() };

@@ -77,9 +77,9 @@ fn as_json(blob: &Blob, bytes: u64) -> Value {
             "attraction_per_s": gains.attraction,
             "coupling": gains.coupling,
             "decay_per_s": gains.decay,
-            "drive_m_per_s2": gains.drive,
+            "drive_per_s2": gains.drive,
             "repulsion_m_per_s2": gains.repulsion,
-            "repulsion_range_m": gains.repulsion_range,
+            "repulsion_range_ring_radii": gains.repulsion_range,
             "cruise_m_per_s": gains.cruise,
             "turn_per_s": gains.turn,
         },
@@ -115,7 +115,7 @@ fn as_text(blob: &Blob, bytes: u64) -> String {
     ));
     let gains = &blob.gains;
     lines.push(format!(
-        "motion   attraction {} /s, coupling {}, decay {} /s, drive {} m/s², repulsion {} m/s² within {} m, cruise {} m/s, turn {} /s",
+        "motion   attraction {} /s, coupling {}, decay {} /s, drive {} /s², repulsion {} m/s² within {} ring radii, cruise {} m/s, turn {} /s",
         gains.attraction,
         gains.coupling,
         gains.decay,

@@ -185,7 +185,12 @@ impl<M: Medium> Follower<M> {
                 }
             }
             let neighbours = Direction::ALL.map(|direction| self.medium.lattice().neighbour(node, direction));
-            let inside = neighbours.map(|neighbour| self.is_inside(neighbour, view));
+            let inside = neighbours
+                .map(|neighbour| self.components[neighbour] == self.component || self.is_inside(neighbour, view));
+            if inside == [true; 4] {
+                neighbours.into_iter().for_each(|neighbour| self.join(neighbour));
+                continue;
+            }
             self.followed[node] = 0;
             for direction in Direction::ALL {
                 let (neighbour, right) = (neighbours[direction.index()], direction.right());

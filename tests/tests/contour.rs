@@ -29,7 +29,7 @@ fn worlds() -> [World; 3] {
 
 /// The printed models and the individuals of a search's first generation.
 fn models(world: &World) -> Vec<(String, Model)> {
-    let settings = Settings { seed: 5, population: 24, evaluations: 24 * 20, ..Settings::default() };
+    let settings = Settings { seed: 5, population: 32, evaluations: 32 * 20, ..Settings::default() };
     let mut search = Search::new(world, settings, None).unwrap();
     assert_eq!(search.advance(&AtomicBool::new(false), &|_| {}), Advance::Generation);
     let printed = PUBLISHED.iter().map(|published| (published.name.to_owned(), published.network().unwrap()));
@@ -76,6 +76,7 @@ fn fast_contours_are_the_plain_ones() {
                 let patterns = STEPS.iter().map(|&step| plain_pattern(world, model, snapshot, step)).enumerate();
                 let mut patterns = patterns.skip_while(|(_, plain)| !same_topology(&fast, plain));
                 let Some((level, plain)) = patterns.next() else {
+                    eprintln!("{place}: {} rings, {:?}", fast.rings.len(), fast.enclosed);
                     faults.push(format!("{place}: {} rings, {:?}", fast.rings.len(), fast.enclosed));
                     continue;
                 };

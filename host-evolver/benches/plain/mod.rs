@@ -13,7 +13,7 @@ pub struct Plain {
     pub rings: Vec<Vec<Point<f64>>>,
     /// For each target whether a closed component holds it.
     pub enclosed: Vec<bool>,
-    /// Whether some component reaches the grid's border.
+    /// Whether some component reaches the grid's border but no wall: a larger grid would tell more.
     pub cut_off: bool,
 }
 
@@ -42,8 +42,10 @@ pub fn trace(world: &World, model: &Model, snapshot: &Snapshot, [low, high]: [Po
         let known = components.iter().find(|(nodes, _)| nodes.contains(&start)).map(|(_, closed)| *closed);
         let closed = known.unwrap_or_else(|| {
             let nodes = grid.component(start);
-            plain.cut_off |= nodes.iter().any(|&node| grid.is_on_border(node));
-            let closed = !nodes.iter().any(|&node| grid.is_on_border(node) || grid.clearance[node] <= 0.0);
+            let in_wall = nodes.iter().any(|&node| grid.clearance[node] <= 0.0);
+            let at_border = nodes.iter().any(|&node| grid.is_on_border(node));
+            plain.cut_off |= at_border && !in_wall;
+            let closed = !in_wall && !at_border;
             if closed {
                 plain.rings.extend(grid.rings(&nodes));
             }

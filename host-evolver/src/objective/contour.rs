@@ -5,6 +5,7 @@ use super::lanes::{Lanes, WIDTH};
 use super::lattice::{Direction, Edge, Medium, NodeIndex, Site};
 use super::model::Model;
 use super::ring::thinned;
+use super::sharpen::sharpened;
 use super::world::Snapshot;
 use grn_core::geometry::Point;
 
@@ -185,7 +186,12 @@ impl<M: Medium> Follower<M> {
                 }
             }
             let neighbours = Direction::ALL.map(|direction| self.medium.lattice().neighbour(node, direction));
-            let inside = neighbours.map(|neighbour| self.is_inside(neighbour, view));
+            let inside = neighbours
+                .map(|neighbour| self.components[neighbour] == self.component || self.is_inside(neighbour, view));
+            if inside == [true; 4] {
+                neighbours.into_iter().for_each(|neighbour| self.join(neighbour));
+                continue;
+            }
             self.followed[node] = 0;
             for direction in Direction::ALL {
                 let (neighbour, right) = (neighbours[direction.index()], direction.right());
@@ -242,7 +248,7 @@ impl<M: Medium> Follower<M> {
         view.model.error(middle[0], middle[1]) >= 0.0
     }
 
-    /// Follows every edge of the component labelled last, each a closed contour with the inside to its left.
+    /// Follows every edge of the component labelled last, each a closed contour with the inside to its right.
     pub(super) fn follow(&mut self, view: View<'_>, loops: &mut Vec<Vec<Point<f64>>>) {
         let crossings = std::mem::take(&mut self.crossings);
         for &(node, direction) in &crossings {
@@ -287,6 +293,10 @@ impl<M: Medium> Follower<M> {
     /// Where the contour crosses the collected edges: from the chord, one evaluation, then the parabola through three
     /// points.
     fn refined(&self, view: View<'_>) -> Vec<Point<f64>> {
+        let error = |point| {
+            let [x1, x2] = self.medium.world().inputs_at(view.snapshot, point);
+            view.model.error(x1, x2)
+        };
         let mut points = Vec::with_capacity(self.edges.len());
         for edges in self.edges.chunks(WIDTH) {
             let filled = std::array::from_fn(|lane| edges[lane.min(edges.len() - 1)]);
@@ -297,11 +307,16 @@ impl<M: Medium> Follower<M> {
             let [x1, x2] = self.medium.inputs_along(view.snapshot, &filled, chord);
             let middle = view.model.errors(x1, x2);
             points.extend(edges.iter().enumerate().map(|(lane, &edge)| {
-                let t = parabola_root([0.0, chord.0[lane], 1.0], [inner[lane], middle.0[lane], outer[lane]]);
+                let t = if self.medium.is_creased(edge) {
+                    root_between(inner[lane], outer[lane], |t| error(self.medium.along(edge, t)))
+                } else {
+                    parabola_root([0.0, chord.0[lane], 1.0], [inner[lane], middle.0[lane], outer[lane]])
+                };
                 self.medium.along(edge, t)
             }));
         }
-        thinned(points, self.medium.lattice().step() * CLOSEST_POINTS)
+        let ring = thinned(points, self.medium.lattice().step() * CLOSEST_POINTS);
+        sharpened(ring, |point| self.medium.world().is_at_crease(point), error)
     }
 }
 
@@ -314,4 +329,24 @@ fn parabola_root(t: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
     let root =
         t[0] * b * c / ((a - b) * (a - c)) + t[1] * a * c / ((b - a) * (b - c)) + t[2] * a * b / ((c - a) * (c - b));
     if (0.0..=1.0).contains(&root) { root } else { t[1] }
+}
+
+/// The root in [0, 1] of a function with the given values at 0 and 1, by false position with halving (Illinois).
+fn root_between(start: f64, end: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const STEPS: usize = 5;
+    if !end.is_finite() {
+        return 0.0;
+    }
+    let (mut a, mut b) = ((0.0, start), (1.0, end));
+    for _ in 0..STEPS {
+        let t = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
+        let value = f(t);
+        if (value < 0.0) == (b.1 < 0.0) {
+            a.1 *= 0.5;
+        } else {
+            a = b;
+        }
+        b = (t, value);
+    }
+    b.0
 }

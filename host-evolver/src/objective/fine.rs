@@ -1,8 +1,8 @@
 //! A finer lattice, on which doubtful topology is decided.
 
 use super::lanes::{Lanes, WIDTH};
-use super::lattice::{Lattice, Medium, NodeIndex, Site};
-use super::world::{LATTICE_STEP, Snapshot, World};
+use super::lattice::{Edge, Lattice, Medium, NodeIndex, Site};
+use super::world::{LATTICE_STEP, Snapshot, World, is_crease};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Spacing of the fine lattice, metres.
@@ -58,5 +58,9 @@ impl Medium for Computed<'_> {
     }
     fn site(&self, node: NodeIndex) -> Site {
         Site::of(self.lattice(), node, self.clearance(node))
+    }
+    fn is_creased(&self, edge: Edge) -> bool {
+        let middle = self.0.clearance_at(self.along(edge, 0.5));
+        is_crease(self.clearance(edge.from), middle, self.clearance(edge.to))
     }
 }

@@ -18,6 +18,9 @@ pub(super) struct Direction(u8);
 impl Direction {
     pub(super) const ALL: [Direction; 4] = [Direction(0), Direction(1), Direction(2), Direction(3)];
 
+    pub(super) const EAST: Direction = Direction(0);
+    pub(super) const NORTH: Direction = Direction(1);
+
     pub(super) const fn index(self) -> usize {
         self.0 as usize
     }
@@ -156,6 +159,9 @@ pub(super) trait Medium {
     /// What a pattern meets at a node.
     fn site(&self, node: NodeIndex) -> Site;
 
+    /// Whether the distance to the walls is far from linear along an edge.
+    fn is_creased(&self, edge: Edge) -> bool;
+
     /// The point at the fraction `t` of the way along an edge.
     fn along(&self, edge: Edge, t: f64) -> Point<f64> {
         let start = self.lattice().point(edge.from);
@@ -163,7 +169,8 @@ pub(super) trait Medium {
     }
 
     /// (x1, x2) at fractions of the way along eight edges. x1 is exact; x2 takes the distance to the walls as linear
-    /// along an edge, which it is beside a straight wall.
+    /// along an edge, which it is beside a straight wall; other edges are
+    /// [creased](Medium::is_creased).
     fn inputs_along(&self, snapshot: &Snapshot, edges: &[Edge; WIDTH], t: Lanes) -> [Lanes; 2] {
         let points = std::array::from_fn(|lane| self.along(edges[lane], t.0[lane]));
         let clearance = std::array::from_fn(|lane| {
@@ -197,5 +204,9 @@ impl Medium for Kept<'_> {
     }
     fn site(&self, node: NodeIndex) -> Site {
         self.0.sites[node]
+    }
+    fn is_creased(&self, edge: Edge) -> bool {
+        let along_rows = edge.from.abs_diff(edge.to) == 1;
+        self.0.creases[edge.from.min(edge.to)][usize::from(!along_rows)]
     }
 }

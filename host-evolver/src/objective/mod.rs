@@ -12,6 +12,7 @@ mod lattice;
 mod model;
 mod profile;
 mod ring;
+mod sharpen;
 mod tracer;
 mod world;
 

@@ -3,14 +3,16 @@
 use super::fine::FineLattice;
 use super::fitness::Terms;
 use super::lanes::{Lanes, WIDTH, concentration};
-use super::lattice::{Lattice, Site};
+use super::lattice::{Direction, Lattice, NodeIndex, Site};
 use firmware_sim::scenario::Scenario;
 use grn_core::field::Field;
-use grn_core::geometry::Point;
+use grn_core::geometry::{Point, Vector};
 use std::sync::Arc;
 
 /// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
 pub const LATTICE_STEP: f64 = 0.2;
+/// An edge of the lattice is creased if the distance to the walls in its middle is this far from the ends' mean, metres.
+const CREASE: f64 = 0.004;
 /// Stands for "no wall near": every kernel is 0 there.
 const FAR: f64 = 1e3;
 
@@ -36,6 +38,8 @@ pub struct World {
     pub(super) lattice: Lattice,
     /// Signed distance to the nearest wall at each node, negative inside, at most [`FAR`].
     pub(super) clearance: Vec<f64>,
+    /// For each node whether the edges from it to the east and to the north are creased.
+    pub(super) creases: Vec<[bool; 2]>,
     /// What a pattern meets at each node.
     pub(super) sites: Vec<Site>,
     pub(super) fine: Arc<FineLattice>,
@@ -57,6 +61,7 @@ impl World {
             field: Field::new(morphogen.kernel, morphogen.target_width, morphogen.obstacle_width),
             snapshots: Vec::new(),
             clearance: Vec::new(),
+            creases: Vec::new(),
             sites: Vec::new(),
             fine: Arc::new(FineLattice::over(scenario.region())),
             terms: Terms::of(scenario.ring()),
@@ -65,6 +70,7 @@ impl World {
         };
         let points = world.lattice.nodes().map(|node| world.lattice.point(node));
         world.clearance = points.map(|point| world.clearance_at(point)).collect();
+        world.creases = world.lattice.nodes().map(|node| world.creases_from(node)).collect();
         let site = |node| Site::of(&world.lattice, node, world.clearance[node]);
         world.sites = world.lattice.nodes().map(site).collect();
         let x2: Vec<f64> = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
@@ -81,6 +87,16 @@ impl World {
             obstacle_points: self.scenario.obstacle_points(&targets),
             targets,
         }
+    }
+
+    fn creases_from(&self, node: NodeIndex) -> [bool; 2] {
+        let point = self.lattice.point(node);
+        [(Direction::EAST, Vector::new(0.5, 0.0)), (Direction::NORTH, Vector::new(0.0, 0.5))].map(
+            |(direction, half)| {
+                let Some(&end) = self.clearance.get(self.lattice.neighbour(node, direction)) else { return false };
+                is_crease(self.clearance[node], self.clearance_at(point + half * LATTICE_STEP), end)
+            },
+        )
     }
 
     /// The scenario it was made from.
@@ -129,6 +145,16 @@ impl World {
         concentration(morphogen.kernel, morphogen.obstacle_width, outside * outside)
     }
 
+    /// Whether an edge of the lattice cell around `point` is creased.
+    pub(super) fn is_at_crease(&self, point: Point<f64>) -> bool {
+        let Some(corner) = self.lattice.cell_around(point).and_then(|corners| corners.into_iter().min()) else {
+            return false;
+        };
+        let [east, north] = self.creases[corner];
+        let east_of_north = self.creases[self.lattice.neighbour(corner, Direction::NORTH)][0];
+        east || north || east_of_north || self.creases[corner + 1][1]
+    }
+
     /// Whether `point` is nearer than `distance` metres to a wall.
     pub(super) fn is_closer_than(&self, point: Point<f64>, distance: f64) -> bool {
         // Distance changes by at most a metre a metre, and the node beside is less than one lattice step away.
@@ -136,6 +162,11 @@ impl World {
             self.lattice.beside(point).is_some_and(|node| self.clearance[node] - LATTICE_STEP > distance);
         !surely_clear && self.clearance_at(point) < distance
     }
+}
+
+/// Whether the clearance in the middle of an edge is far from what it is at the ends.
+pub(super) fn is_crease(start: f64, middle: f64, end: f64) -> bool {
+    ((start + end) * 0.5 - middle).abs() > CREASE
 }
 
 fn inputs_at(world: &World, targets: &[Point<f64>], point: Point<f64>) -> [f64; 2] {

@@ -1,0 +1,129 @@
+//! Corners: where walls meet or face each other x2 has a crease, and a contour a corner between two lattice edges.
+
+use grn_core::geometry::{Point, Vector};
+
+/// A chord that may miss the contour by more than this is looked into, metres.
+const SUSPECT: f64 = 0.01;
+/// The same where x2 has a crease: there a chord can miss a corner by more than the turns at its ends tell.
+const SUSPECT_AT_CREASE: f64 = 0.003;
+/// A chord that misses the contour by more than this is split, metres.
+const TOLERATED: f64 = 0.005;
+/// A chord is halved at most this many times.
+const DEEPEST: u32 = 4;
+
+/// The ring, inside to its right, with more points where it turns sharply; `error` is the exact pattern error.
+pub(super) fn sharpened(
+    ring: Vec<Point<f64>>,
+    is_at_crease: impl Fn(Point<f64>) -> bool,
+    error: impl Fn(Point<f64>) -> f64,
+) -> Vec<Point<f64>> {
+    let count = ring.len();
+    let is_suspect = |place: usize| {
+        may_miss(&ring, place, SUSPECT_AT_CREASE)
+            && (may_miss(&ring, place, SUSPECT) || is_at_crease((ring[place] + ring[(place + 1) % count]) * 0.5))
+    };
+    let suspect: Vec<bool> = (0..count).map(is_suspect).collect();
+    if !suspect.contains(&true) {
+        return ring;
+    }
+    let mut sharp = Vec::with_capacity(2 * count);
+    for place in 0..count {
+        sharp.push(ring[place]);
+        if suspect[place] {
+            split(ring[place], ring[(place + 1) % count], DEEPEST, &error, &mut sharp);
+        }
+    }
+    sharp
+}
+
+/// Whether the chord from the point at `place` may miss the contour by a distance: by a quarter of its length times the turn at an end.
+fn may_miss(ring: &[Point<f64>], place: usize, distance: f64) -> bool {
+    let at = |offset: usize| ring[(place + offset) % ring.len()];
+    let (before, chord, after) = (at(0) - at(ring.len() - 1), at(1) - at(0), at(2) - at(1));
+    let exceeds = |side: Vector<f64>| {
+        let area = side.cross(chord);
+        area * area > 16.0 * distance * distance * side.dot(side) || side.dot(chord) < 0.0
+    };
+    exceeds(before) || exceeds(after)
+}
+
+/// Adds points between `from` and `to`, so that chords follow the contour.
+fn split(
+    from: Point<f64>,
+    to: Point<f64>,
+    depth: u32,
+    error: &impl Fn(Point<f64>) -> f64,
+    points: &mut Vec<Point<f64>>,
+) {
+    let chord = to - from;
+    let middle = from + chord * 0.5;
+    let Some(found) = crossing(middle, chord, error) else { return };
+    if depth == 0 || (found - middle).length() < TOLERATED {
+        return;
+    }
+    split(from, found, depth - 1, error, points);
+    points.push(found);
+    split(found, to, depth - 1, error, points);
+}
+
+/// Where the contour crosses the perpendicular to `along` through `point`, within twice the length of `along`.
+fn crossing(point: Point<f64>, along: Vector<f64>, error: &impl Fn(Point<f64>) -> f64) -> Option<Point<f64>> {
+    let length = along.length();
+    if length == 0.0 {
+        return None;
+    }
+    let inwards = Vector::new(along.y, -along.x) * (1.0 / length);
+    let at = |distance: f64| error(point + inwards * distance);
+    let here = at(0.0);
+    let side = if here < 0.0 { 1.0 } else { -1.0 };
+    let (mut near, mut far) = ((0.0, here), (0.0, here));
+    for share in [0.1, 0.25, 0.5, 1.0, 2.0] {
+        let distance = side * share * length;
+        far = (distance, at(distance));
+        if (far.1 < 0.0) != (here < 0.0) {
+            break;
+        }
+        near = far;
+    }
+    if (far.1 < 0.0) == (here < 0.0) {
+        return None;
+    }
+    for _ in 0..2 {
+        let distance = near.0 + (far.0 - near.0) * near.1 / (near.1 - far.1);
+        let middle = (distance, at(distance));
+        if (middle.1 < 0.0) == (near.1 < 0.0) {
+            near = middle;
+        } else {
+            far = middle;
+        }
+    }
+    Some(point + inwards * (near.0 + (far.0 - near.0) * near.1 / (near.1 - far.1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_squares_corners_are_found_and_a_circle_is_left_alone() {
+        // Inside is |x| + |y| ≤ 1; no point given is near a corner.
+        let mut ring: Vec<_> = (0..4)
+            .flat_map(|side| {
+                let (from, to) = ([(1, 0), (0, 1), (-1, 0), (0, -1)][side], [(0, 1), (-1, 0), (0, -1), (1, 0)][side]);
+                let corner = |(x, y): (i32, i32)| Vector::new(f64::from(x), f64::from(y));
+                [0.1, 0.3, 0.5, 0.7, 0.9].map(|t| corner(from) * (1.0 - t) + corner(to) * t)
+            })
+            .collect();
+        ring.reverse();
+        let sharp = sharpened(ring, |_| false, |p| 1.0 - p.x.abs() - p.y.abs());
+        let off = |corner: Point<f64>| sharp.iter().map(|&p| (p - corner).length()).fold(f64::INFINITY, f64::min);
+        for corner in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)] {
+            assert!(off(corner) < 0.01, "{} m from a corner", off(corner));
+        }
+        let circle: Vec<_> = (0..60)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 60.0)
+            .map(|angle| Vector::new(1.5 * libm::cos(angle), 1.5 * libm::sin(angle)))
+            .collect();
+        assert_eq!(sharpened(circle.clone(), |_| false, |_| unreachable!("no corner to look into")), circle);
+    }
+}

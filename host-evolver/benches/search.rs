@@ -49,7 +49,7 @@ fn runs(c: &mut Criterion) {
         let bounds = Bounds::cube(10, -5.12, 5.12).expect("an interval");
         b.iter(|| {
             let mut rng = Pcg64Mcg::seed_from_u64(1);
-            let sphere = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>();
+            let sphere = |x: &[f64], _: Option<&f64>| x.iter().map(|x| x * x).sum::<f64>();
             de::minimise(&settings, &bounds, &[], &mut rng, sphere, de::at_most)
         });
     });

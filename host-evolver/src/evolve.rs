@@ -14,9 +14,12 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A tree whose structure its generation already has is drawn again at most so often.
+const REDRAWS: usize = 20;
 
 /// Everything that decides a run besides the scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -245,18 +248,29 @@ impl<'w> Search<'w> {
         Advance::Generation
     }
 
-    /// The next trees to tune, each with its own random stream.
+    /// The next trees to tune, each with its own random stream; no structure twice, if it can be helped.
     fn breed(&self, count: usize) -> Vec<(Tree, ChaCha8Rng)> {
         let scores: Vec<_> = self.state.population.iter().map(Individual::scores).collect();
         let standings = nsga2::standings(&scores);
+        let mut structures = HashSet::new();
         let individual = |place: usize| {
             let mut rng = ChaCha8Rng::seed_from_u64(self.settings.seed);
             rng.set_stream(u64::from(self.state.generation) << 32 | place as u64);
-            let tree = if standings.is_empty() {
-                self.grammar.ramped(place, &mut rng)
-            } else {
-                self.offspring(&standings, &mut rng)
+            let mut draw = || {
+                if standings.is_empty() {
+                    self.grammar.ramped(place, &mut rng)
+                } else {
+                    self.offspring(&standings, &mut rng)
+                }
             };
+            let mut tree = draw();
+            for _ in 0..REDRAWS {
+                if !structures.contains(&tree.structure()) {
+                    break;
+                }
+                tree = draw();
+            }
+            structures.insert(tree.structure());
             (tree, rng)
         };
         (0..count).map(individual).collect()
@@ -277,10 +291,12 @@ impl<'w> Search<'w> {
     fn tune(&self, judge: &mut Judge<'w>, tree: &Tree, rng: &mut ChaCha8Rng) -> Individual {
         let inherited = tree.thetas();
         let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
-        let evaluate = |thetas: &[f64]| judge.judge_tree(&tree.with_thetas(thetas), self.settings.steepness);
-        let tuned = Bounds::cube(inherited.len(), low, high)
-            .ok()
-            .and_then(|bounds| de::minimise(&self.de, &bounds, &[inherited], rng, evaluate, at_least_as_good).ok());
+        let evaluate = |thetas: &[f64], rival: Option<&Evaluation>| {
+            judge.judge_tree(&tree.with_thetas(thetas), self.settings.steepness, rival)
+        };
+        let tuned = Bounds::cube(inherited.len(), low, high).ok().and_then(|bounds| {
+            de::minimise(&self.de, &bounds, &[inherited], rng, evaluate, Evaluation::is_as_good_as).ok()
+        });
         match tuned {
             Some(best) => Individual::new(tree.with_thetas(&best.best), best.fitness),
             None => Individual::new(tree.clone(), Evaluation::NO_PATTERN),
@@ -302,11 +318,6 @@ impl<'w> Search<'w> {
     pub fn front(&self) -> Vec<FrontMember> {
         front_of(&self.state.population)
     }
-}
-
-fn at_least_as_good(a: &Evaluation, b: &Evaluation) -> bool {
-    let scores = |e: &Evaluation| Scores { objectives: [e.f2], violation: e.violation };
-    !scores(b).dominates(&scores(a))
 }
 
 /// NSGA-II survival among parents and offspring, of each structure only the best.

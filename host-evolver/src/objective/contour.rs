@@ -316,7 +316,11 @@ impl<M: Medium> Follower<M> {
             }));
         }
         let ring = thinned(points, self.medium.lattice().step() * CLOSEST_POINTS);
-        sharpened(ring, |point| self.medium.world().is_at_crease(point), error)
+        let errors = |points: &[Point<f64>; WIDTH]| {
+            let [x1, x2] = self.medium.world().inputs_at_all(view.snapshot, points);
+            view.model.errors(x1, x2)
+        };
+        sharpened(ring, |point| self.medium.world().is_at_crease(point), errors)
     }
 }
 

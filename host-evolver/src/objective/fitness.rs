@@ -5,6 +5,7 @@ use super::profile::{Profile, Sigmoid};
 use super::ring::candidates;
 use super::tracer::{Contours, Tracer};
 use super::world::{Snapshot, World};
+use crate::search::nsga2::Scores;
 use crate::tree::Tree;
 use firmware_sim::scenario::Ring;
 use grn_core::geometry::Point;
@@ -32,15 +33,30 @@ impl Evaluation {
     /// The value of something that makes no pattern at all.
     pub const NO_PATTERN: Evaluation = Evaluation { f2: WORST_F2, violation: NO_PATTERN_VIOLATION };
 
+    fn over(self, count: f64) -> Evaluation {
+        Evaluation { f2: self.f2 / count, violation: self.violation / count }
+    }
+
+    /// Deb's rule: less violation, or the same and at most the f2.
+    pub fn is_as_good_as(&self, other: &Evaluation) -> bool {
+        let scores = |e: &Evaluation| Scores { objectives: [e.f2], violation: e.violation };
+        !scores(other).dominates(&scores(self))
+    }
+
     /// Whether every target is enclosed everywhere and every candidate point is clear.
     pub fn is_feasible(&self) -> bool {
         self.violation == 0.0
     }
 }
 
+/// How far off the terms may be, both tabulated and summed.
+const ROUNDING: f64 = 1e-6;
+
 /// The terms of f2 as functions of a distance.
 #[derive(Clone, Debug)]
 pub(super) struct Terms {
+    /// No snapshot's f2 is below: the terms of a point midway between d_min and d_max from every target, 2 sig(-(d_max - d_min) / 2, 0, k).
+    least: f64,
     /// sig(d, d_max, k1) + sig(d_min, d, k2).
     target: Profile,
     /// sig(d_obstacle, d, k3).
@@ -52,6 +68,7 @@ impl Terms {
         let rising = |threshold: f64| Sigmoid { threshold, slope: ring.steepness };
         let falling = |threshold: f64| Sigmoid { threshold, slope: -ring.steepness };
         Terms {
+            least: 2.0 * rising(ring.d_max).at((ring.d_min + ring.d_max) / 2.0) - ROUNDING,
             target: Profile::new(vec![rising(ring.d_max), falling(ring.d_min)]),
             obstacle: Profile::new(vec![falling(ring.d_obstacle)]),
         }
@@ -70,25 +87,34 @@ impl<'w> Judge<'w> {
         Judge { world, tracer: Tracer::new(world) }
     }
 
-    /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold.
-    pub fn judge_tree(&mut self, tree: &Tree, steepness: f32) -> Evaluation {
+    /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold. If the tree is worse than its rival
+    /// the evaluation stops as soon as that is sure, with a value between the rival's and its own.
+    pub fn judge_tree(&mut self, tree: &Tree, steepness: f32, rival: Option<&Evaluation>) -> Evaluation {
         let level = self.world.scenario().morphogen().level;
         match tree.network(steepness).ok().and_then(|network| Model::new(&network, level).ok()) {
-            Some(model) => self.judge(&model),
+            Some(model) => self.judge_against(&model, rival),
             None => Evaluation::NO_PATTERN,
         }
     }
 
     /// Evaluates a model over all snapshots.
     pub fn judge(&mut self, model: &Model) -> Evaluation {
-        let (mut f2, mut violation) = (0.0, 0.0);
+        self.judge_against(model, None)
+    }
+
+    fn judge_against(&mut self, model: &Model, rival: Option<&Evaluation>) -> Evaluation {
+        let count = self.world.snapshots().len() as f64;
+        let (mut sum, mut left) = (Evaluation { f2: 0.0, violation: 0.0 }, count);
         for (snapshot, contours) in self.tracer.trace_all(model) {
             let moment = judge_moment(self.world, snapshot, &contours);
-            f2 += moment.f2;
-            violation += moment.violation;
+            left -= 1.0;
+            sum = Evaluation { f2: sum.f2 + moment.f2, violation: sum.violation + moment.violation };
+            let at_best = Evaluation { f2: sum.f2 + left * self.world.terms.least, ..sum }.over(count);
+            if left > 0.0 && rival.is_some_and(|rival| !at_best.is_as_good_as(rival)) {
+                return at_best;
+            }
         }
-        let count = self.world.snapshots().len() as f64;
-        Evaluation { f2: f2 / count, violation: violation / count }
+        sum.over(count)
     }
 }
 

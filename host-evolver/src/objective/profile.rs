@@ -19,7 +19,8 @@ pub(super) struct Sigmoid {
 }
 
 impl Sigmoid {
-    fn at(self, distance: f64) -> f64 {
+    /// Its value at a distance, metres.
+    pub(super) fn at(self, distance: f64) -> f64 {
         1.0 / (1.0 + libm::exp(-self.slope * (distance - self.threshold)))
     }
 }

@@ -1,21 +1,25 @@
 //! Corners: where walls meet or face each other x2 has a crease, and a contour a corner between two lattice edges.
 
+use super::lanes::{Lanes, WIDTH};
 use grn_core::geometry::{Point, Vector};
 
 /// A chord that may miss the contour by more than this is looked into, metres.
 const SUSPECT: f64 = 0.01;
 /// The same where x2 has a crease: there a chord can miss a corner by more than the turns at its ends tell.
-const SUSPECT_AT_CREASE: f64 = 0.003;
+const SUSPECT_AT_CREASE: f64 = 0.006;
 /// A chord that misses the contour by more than this is split, metres.
 const TOLERATED: f64 = 0.005;
 /// A chord is halved at most this many times.
 const DEEPEST: u32 = 4;
 
-/// The ring, inside to its right, with more points where it turns sharply; `error` is the exact pattern error.
+/// Where the contour is looked for across a chord, in lengths of the chord: beside its middle, and on both sides.
+const LOOKED_AT: [f64; WIDTH] = [0.0, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0, 2.0];
+
+/// The ring, inside to its right, with more points where it turns sharply; `errors` is the exact pattern error.
 pub(super) fn sharpened(
     ring: Vec<Point<f64>>,
     is_at_crease: impl Fn(Point<f64>) -> bool,
-    error: impl Fn(Point<f64>) -> f64,
+    errors: impl Fn(&[Point<f64>; WIDTH]) -> Lanes,
 ) -> Vec<Point<f64>> {
     let count = ring.len();
     let is_suspect = |place: usize| {
@@ -30,7 +34,7 @@ pub(super) fn sharpened(
     for place in 0..count {
         sharp.push(ring[place]);
         if suspect[place] {
-            split(ring[place], ring[(place + 1) % count], DEEPEST, &error, &mut sharp);
+            split(ring[place], ring[(place + 1) % count], DEEPEST, &errors, &mut sharp);
         }
     }
     sharp
@@ -52,52 +56,72 @@ fn split(
     from: Point<f64>,
     to: Point<f64>,
     depth: u32,
-    error: &impl Fn(Point<f64>) -> f64,
+    errors: &impl Fn(&[Point<f64>; WIDTH]) -> Lanes,
     points: &mut Vec<Point<f64>>,
 ) {
     let chord = to - from;
     let middle = from + chord * 0.5;
-    let Some(found) = crossing(middle, chord, error) else { return };
+    let Some(found) = crossing(middle, chord, errors) else { return };
     if depth == 0 || (found - middle).length() < TOLERATED {
         return;
     }
-    split(from, found, depth - 1, error, points);
+    split(from, found, depth - 1, errors, points);
     points.push(found);
-    split(found, to, depth - 1, error, points);
+    split(found, to, depth - 1, errors, points);
 }
 
-/// Where the contour crosses the perpendicular to `along` through `point`, within twice the length of `along`.
-fn crossing(point: Point<f64>, along: Vector<f64>, error: &impl Fn(Point<f64>) -> f64) -> Option<Point<f64>> {
+/// Where the contour crosses the perpendicular to `along` through `point`, within once or twice the length of `along`.
+fn crossing(
+    point: Point<f64>,
+    along: Vector<f64>,
+    errors: &impl Fn(&[Point<f64>; WIDTH]) -> Lanes,
+) -> Option<Point<f64>> {
     let length = along.length();
     if length == 0.0 {
         return None;
     }
     let inwards = Vector::new(along.y, -along.x) * (1.0 / length);
-    let at = |distance: f64| error(point + inwards * distance);
-    let here = at(0.0);
-    let side = if here < 0.0 { 1.0 } else { -1.0 };
-    let (mut near, mut far) = ((0.0, here), (0.0, here));
-    for share in [0.1, 0.25, 0.5, 1.0, 2.0] {
-        let distance = side * share * length;
-        far = (distance, at(distance));
-        if (far.1 < 0.0) != (here < 0.0) {
-            break;
+    let at = |distances: [f64; WIDTH]| errors(&distances.map(|distance| point + inwards * distance)).0;
+    let distances = LOOKED_AT.map(|share| share * length);
+    let found = at(distances);
+    let outwards = found[0] >= 0.0;
+    let on_the_way = |&(distance, _): &(f64, f64)| if outwards { distance <= 0.0 } else { distance >= 0.0 };
+    let bracket = first_change(distances.into_iter().zip(found).filter(on_the_way))?;
+    let estimate = bracket.root();
+    if estimate.abs() < 0.5 * TOLERATED {
+        return Some(point + inwards * estimate);
+    }
+    let (near, far) = (bracket.near, bracket.far);
+    let between = std::array::from_fn(|lane| near.0 + (far.0 - near.0) * (lane + 1) as f64 / (WIDTH + 1) as f64);
+    let finer = between.into_iter().zip(at(between));
+    let bracket = first_change(std::iter::once(near).chain(finer).chain([far]))?;
+    Some(point + inwards * bracket.root())
+}
+
+/// Two places, each with its error, between which the sign changes.
+struct Bracket {
+    near: (f64, f64),
+    far: (f64, f64),
+}
+
+impl Bracket {
+    /// The root of the straight line through both.
+    fn root(&self) -> f64 {
+        let (near, far) = (self.near, self.far);
+        near.0 + (far.0 - near.0) * near.1 / (near.1 - far.1)
+    }
+}
+
+/// The first two consecutive places of different signs.
+fn first_change(mut places: impl Iterator<Item = (f64, f64)>) -> Option<Bracket> {
+    let mut near = places.next()?;
+    for far in places {
+        if (far.1 < 0.0) != (near.1 < 0.0) {
+            return Some(Bracket { near, far });
         }
         near = far;
     }
-    if (far.1 < 0.0) == (here < 0.0) {
-        return None;
-    }
-    for _ in 0..2 {
-        let distance = near.0 + (far.0 - near.0) * near.1 / (near.1 - far.1);
-        let middle = (distance, at(distance));
-        if (middle.1 < 0.0) == (near.1 < 0.0) {
-            near = middle;
-        } else {
-            far = middle;
-        }
-    }
-    Some(point + inwards * (near.0 + (far.0 - near.0) * near.1 / (near.1 - far.1)))
+    None
 }
 
 #[cfg(test)]
@@ -115,7 +139,7 @@ mod tests {
             })
             .collect();
         ring.reverse();
-        let sharp = sharpened(ring, |_| false, |p| 1.0 - p.x.abs() - p.y.abs());
+        let sharp = sharpened(ring, |_| false, |points| Lanes(points.map(|p| 1.0 - p.x.abs() - p.y.abs())));
         let off = |corner: Point<f64>| sharp.iter().map(|&p| (p - corner).length()).fold(f64::INFINITY, f64::min);
         for corner in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)] {
             assert!(off(corner) < 0.01, "{} m from a corner", off(corner));

@@ -119,6 +119,12 @@ impl World {
         inputs_at(self, &snapshot.targets, point)
     }
 
+    /// The same at eight points.
+    pub(super) fn inputs_at_all(&self, snapshot: &Snapshot, points: &[Point<f64>; WIDTH]) -> [Lanes; 2] {
+        let clearance = points.map(|point| self.clearance_at(point));
+        [self.x1_at_all(snapshot, points), self.x2_at_all(Lanes(clearance))]
+    }
+
     pub(super) fn clearance_at(&self, point: Point<f64>) -> f64 {
         self.scenario.walls().signed_distance(point).min(FAR)
     }

@@ -44,6 +44,11 @@ pub fn at_most(a: &f64, b: &f64) -> bool {
 /// it in the middle of the start or of a generation; what has been evaluated by then counts in full. If the box
 /// has no coordinate there is one vector, which is evaluated once.
 ///
+/// `evaluate(x, rival)` gives the fitness of `x`. A rival is one that `x` has to match: if `x` is strictly worse, any
+/// fitness strictly worse than the rival's will do, so an evaluation may stop as soon as it is sure to be lost. The
+/// rival of a trial is its target, and in the last generation the best vector so far; starting vectors have the best so
+/// far as their rival too if there is at most one generation, for then nothing else depends on their fitness.
+///
 /// `better_or_equal(a, b)` says that `a` is at least as good as `b`. It should order every two fitnesses one way
 /// or the other and be transitive: [`at_most`] does so for a number, and
 /// `|a, b| !b.dominates(a)` for [`Scores<1>`](super::nsga2::Scores), which is Deb's rule. With any other
@@ -57,52 +62,60 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
     bounds: &Bounds,
     initial: &[Vec<f64>],
     rng: &mut R,
-    mut evaluate: impl FnMut(&[f64]) -> Fit,
+    mut evaluate: impl FnMut(&[f64], Option<&Fit>) -> Fit,
     better_or_equal: impl Fn(&Fit, &Fit) -> bool,
 ) -> Result<Outcome<Fit>, InitialError> {
     settings.check_initial(bounds, initial)?;
     if bounds.dimension() == 0 {
-        return Ok(Outcome { best: Vec::new(), fitness: evaluate(&[]), evaluations: 1 });
+        return Ok(Outcome { best: Vec::new(), fitness: evaluate(&[], None), evaluations: 1 });
     }
+    let strictly = |a: &Fit, b: &Fit| better_or_equal(a, b) && !better_or_equal(b, a);
     let budget = settings.evaluations();
     let mut evaluations = 0;
-    let mut score = |x: &[f64]| {
+    let mut score = |x: &[f64], rival: Option<&Fit>| {
         evaluations += 1;
-        evaluate(x)
+        evaluate(x, rival)
     };
 
-    // The settings allow at least one evaluation, so there is a first member.
-    let first = initial.first().cloned().unwrap_or_else(|| bounds.sample(rng));
-    let fitness = score(&first);
-    let mut population = vec![(first, fitness)];
-    while population.len() < settings.population().min(budget) {
+    let size = settings.population().min(budget);
+    let starts_the_last_generation = budget - size <= size;
+    let mut population: Vec<(Vec<f64>, Fit)> = Vec::with_capacity(size);
+    let mut best: Option<Fit> = None;
+    while population.len() < size {
         let x = initial.get(population.len()).cloned().unwrap_or_else(|| bounds.sample(rng));
-        let fitness = score(&x);
+        let fitness = score(&x, best.as_ref().filter(|_| starts_the_last_generation));
+        if best.as_ref().is_none_or(|best| strictly(&fitness, best)) {
+            best = Some(fitness.clone());
+        }
         population.push((x, fitness));
     }
 
-    let mut left = budget - population.len();
+    let mut left = budget - size;
     while left > 0 {
+        let is_last = left <= size;
         let mut next = population.clone();
         for (target, place) in next.iter_mut().enumerate().take(left) {
             let trial = trial(settings, bounds, &population, target, rng);
-            let fitness = score(&trial);
+            let rival = best.as_ref().filter(|_| is_last).unwrap_or(&place.1);
+            let fitness = score(&trial, Some(rival));
+            if best.as_ref().is_none_or(|best| strictly(&fitness, best)) {
+                best = Some(fitness.clone());
+            }
             if better_or_equal(&fitness, &place.1) {
                 *place = (trial, fitness);
             }
         }
-        left -= left.min(next.len());
+        left -= left.min(size);
         population = next;
     }
 
-    let strictly = |a: &Fit, b: &Fit| better_or_equal(a, b) && !better_or_equal(b, a);
-    let mut best = 0;
+    let mut first_best = 0;
     for (i, (_, fitness)) in population.iter().enumerate() {
-        if strictly(fitness, &population[best].1) {
-            best = i;
+        if strictly(fitness, &population[first_best].1) {
+            first_best = i;
         }
     }
-    let (best, fitness) = population.swap_remove(best);
+    let (best, fitness) = population.swap_remove(first_best);
     Ok(Outcome { best, fitness, evaluations })
 }
 

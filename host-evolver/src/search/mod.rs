@@ -42,7 +42,7 @@
 //!     &bounds,
 //!     &[],
 //!     &mut rng,
-//!     |x| Scores { objectives: [x[0] * x[0] + x[1] * x[1]], violation: (1.0 - x[0] - x[1]).max(0.0) },
+//!     |x, _| Scores { objectives: [x[0] * x[0] + x[1] * x[1]], violation: (1.0 - x[0] - x[1]).max(0.0) },
 //!     |a, b| !b.dominates(a),
 //! )?;
 //! assert!((found.best[0] - 0.5).abs() < 1e-3 && (found.best[1] - 0.5).abs() < 1e-3);

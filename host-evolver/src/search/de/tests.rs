@@ -19,7 +19,7 @@ fn logged(settings: &Settings, bounds: &Bounds, initial: &[Vec<f64>], seed: u64)
         bounds,
         initial,
         &mut rng,
-        |x| {
+        |x, _| {
             log.push(x.to_vec());
             sphere(x)
         },
@@ -93,7 +93,7 @@ fn bad_arguments_are_rejected_before_any_evaluation() {
     let bounds = Bounds::cube(2, 0.0, 1.0).unwrap();
     let run = |initial: &[Vec<f64>]| {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
-        minimise(&settings, &bounds, initial, &mut rng, |_| unreachable!(), at_most).unwrap_err()
+        minimise(&settings, &bounds, initial, &mut rng, |_, _| unreachable!(), at_most).unwrap_err()
     };
     let inside = vec![0.5, 0.5];
     assert_eq!(run(&vec![inside.clone(); 5]), InitialError::TooMany { given: 5, population: 4 });
@@ -119,7 +119,7 @@ fn trials_stay_in_the_box_and_off_its_walls() {
     let bounds = Bounds::new(vec![(0.0, 1.0), (-3.0, -2.0), (7.0, 7.0)]).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let mut walls = 0;
-    let evaluate = |x: &[f64]| {
+    let evaluate = |x: &[f64], _: Option<&f64>| {
         assert!(bounds.contain(x), "{x:?}");
         walls += usize::from(x[0] == 0.0 || x[0] == 1.0);
         sphere(x)
@@ -133,7 +133,7 @@ fn trials_stay_in_the_box_and_off_its_walls() {
 fn nan_is_worst_and_does_not_stick() {
     let settings = Settings::new(10, 0.5, 0.9, 30).unwrap();
     let bounds = Bounds::cube(2, -1.0, 1.0).unwrap();
-    let half = |x: &[f64]| if x[0] < 0.0 { f64::NAN } else { sphere(x) };
+    let half = |x: &[f64], _: Option<&f64>| if x[0] < 0.0 { f64::NAN } else { sphere(x) };
     for seed in 0..20 {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
         let outcome = minimise(&settings, &bounds, &[], &mut rng, half, at_most).unwrap();
@@ -163,8 +163,30 @@ fn debs_rule_finds_a_constrained_minimum() {
     let settings = Settings::new(30, 0.5, 0.9, 150).unwrap();
     let bounds = Bounds::cube(2, -20.0, 5.0).unwrap();
     let mut rng = Pcg64Mcg::seed_from_u64(8);
-    let evaluate = |x: &[f64]| Scores { objectives: [sphere(x)], violation: (1.0 - x[0] - x[1]).max(0.0) };
+    let evaluate =
+        |x: &[f64], _: Option<&Scores<1>>| Scores { objectives: [sphere(x)], violation: (1.0 - x[0] - x[1]).max(0.0) };
     let outcome = minimise(&settings, &bounds, &[], &mut rng, evaluate, |a, b| !b.dominates(a)).unwrap();
     assert!(outcome.fitness.is_feasible());
     assert!((outcome.fitness.objectives[0] - 0.5).abs() < 1e-6, "{outcome:?}");
+}
+
+#[test]
+fn an_evaluation_stopped_when_it_is_lost_changes_nothing() {
+    let bounds = Bounds::cube(4, -1.0, 1.0).unwrap();
+    for (generations, seed) in [(0, 1), (1, 2), (1, 3), (2, 4), (7, 5)] {
+        let settings = Settings::new(8, 0.5, 0.9, generations).unwrap();
+        let whole = logged(&settings, &bounds, &[], seed).0;
+        let mut stopped = 0;
+        let barely_worse = |x: &[f64], rival: Option<&f64>| match rival {
+            Some(&rival) if sphere(x) > rival => {
+                stopped += 1;
+                rival.next_up()
+            }
+            _ => sphere(x),
+        };
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let outcome = minimise(&settings, &bounds, &[], &mut rng, barely_worse, at_most).unwrap();
+        assert_eq!(outcome, whole, "{generations} generations");
+        assert!(stopped > 4 * generations.min(1), "only {stopped} evaluations could be stopped");
+    }
 }

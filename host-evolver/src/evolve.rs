@@ -3,12 +3,20 @@
 //! Every individual has a stream of random numbers of its own, named by (run seed, generation, place), so the result
 //! does not depend on threads, and an interrupted run goes on from its last whole generation to the same end.
 
+mod settings;
+#[cfg(test)]
+mod tests;
+
+pub use settings::{DeSettings, Settings, SettingsError};
+
 use crate::objective::{Evaluation, Judge, World};
+use crate::objectives::{Nodes, Objective, RingError};
 use crate::search::bounds::Bounds;
+use crate::search::hypervolume::hypervolume;
 use crate::search::nsga2::{self, Scores, Standing};
 use crate::search::{de, knee};
 use crate::tree::Tree;
-use crate::variation::{Grammar, MotifSet};
+use crate::variation::{Grammar, Variation};
 use grn_core::network::THETA_RANGE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -20,107 +28,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A tree whose structure its generation already has is drawn again at most so often.
 const REDRAWS: usize = 20;
-
-/// Everything that decides a run besides the scenario.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Settings {
-    /// Seed of all random numbers.
-    pub seed: u64,
-    /// Budget: evaluations of f2, all counted.
-    pub evaluations: usize,
-    /// Individuals in a generation.
-    pub population: usize,
-    /// Motifs to build with.
-    pub motifs: MotifSet,
-    /// Least and greatest depth of a tree, in edges.
-    pub depth: (usize, usize),
-    /// Steepness k of every sigmoid.
-    pub steepness: f32,
-    /// Probability that an offspring has two parents instead of one.
-    pub crossover: f64,
-    /// Probability that an offspring is mutated.
-    pub mutation: f64,
-    /// Differential evolution of each new individual's θ.
-    pub de: DeSettings,
-}
-
-/// Parameters of DE/rand/1/bin.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct DeSettings {
-    /// Vectors: NP.
-    pub population: usize,
-    /// Differential weight F.
-    pub weight: f64,
-    /// Crossover probability CR.
-    pub crossover: f64,
-    /// Generations of trials after the initial vectors.
-    pub generations: usize,
-}
-
-impl Default for Settings {
-    /// The paper's settings for the channel.
-    fn default() -> Self {
-        Settings {
-            seed: 1,
-            evaluations: 4000,
-            population: 40,
-            motifs: MotifSet::All,
-            depth: (1, 4),
-            steepness: 1.0,
-            crossover: 1.0,
-            mutation: 0.1,
-            de: DeSettings { population: 10, weight: 0.5, crossover: 0.9, generations: 1 },
-        }
-    }
-}
-
-/// Settings that no run can have.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SettingsError(String);
-
-impl fmt::Display for SettingsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for SettingsError {}
-
-impl Settings {
-    /// Evaluations one individual costs.
-    pub fn evaluations_each(&self) -> usize {
-        self.de.population * (1 + self.de.generations)
-    }
-
-    fn differential_evolution(&self) -> Result<de::Settings, SettingsError> {
-        let DeSettings { population, weight, crossover, generations } = self.de;
-        de::Settings::new(population, weight, crossover, generations).map_err(|error| SettingsError(error.to_string()))
-    }
-
-    fn check(&self) -> Result<(), SettingsError> {
-        self.differential_evolution()?;
-        let least = self.population * self.evaluations_each();
-        let faults = [
-            (self.population < 2, format!("population = {}: at least 2 are needed", self.population)),
-            (
-                self.evaluations < least,
-                format!("evaluations = {}: the first generation alone takes {least}", self.evaluations),
-            ),
-            (!(0.0..=1.0).contains(&self.crossover), format!("crossover = {} is no probability", self.crossover)),
-            (!(0.0..=1.0).contains(&self.mutation), format!("mutation = {} is no probability", self.mutation)),
-            (
-                self.depth.0 < 1 || self.depth.0 > self.depth.1 || self.depth.1 > 4,
-                format!("depth = {:?}: 1 ≤ least ≤ greatest ≤ 4 is needed", self.depth),
-            ),
-        ];
-        match faults.into_iter().find(|(faulty, _)| *faulty) {
-            Some((_, fault)) => Err(SettingsError(fault)),
-            None => Ok(()),
-        }
-    }
-}
 
 /// A tuned tree and what it is worth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -138,9 +45,14 @@ impl Individual {
         Individual { tree, f2: evaluation.f2, violation: evaluation.violation }
     }
 
-    /// (f1, f2) and the violation, for Deb's rule.
-    pub fn scores(&self) -> Scores<2> {
-        Scores { objectives: [self.tree.size() as f64, self.f2], violation: self.violation }
+    /// (f1, f2): how many nodes, and the ring error.
+    pub fn point(&self) -> [f64; 2] {
+        [self.tree.size() as f64, self.f2]
+    }
+
+    /// The objectives' values and the violation, for Deb's rule.
+    pub fn scores<const M: usize>(&self, objectives: &[&dyn Objective; M]) -> Scores<M> {
+        Scores { objectives: objectives.map(|objective| objective.value(self)), violation: self.violation }
     }
 
     /// Whether it encloses every target everywhere without coming too close to a wall.
@@ -175,6 +87,16 @@ pub struct Milestone {
     pub feasible: usize,
     /// Individuals on the feasible non-dominated front.
     pub front: usize,
+    /// Of the feasible individuals, in (f1, f2): the share of the box below [`REFERENCE`] that they dominate.
+    pub hypervolume: f64,
+}
+
+/// The nodes and the f2 beyond which a model counts for nothing in a hypervolume.
+pub const REFERENCE: [f64; 2] = [32.0, 0.2];
+
+/// The share of the box from the origin to [`REFERENCE`] that feasible (f1, f2) dominate, within [0, 1].
+pub fn front_hypervolume(points: impl Iterator<Item = [f64; 2]>) -> f64 {
+    hypervolume(&points.collect::<Vec<_>>(), REFERENCE) / (REFERENCE[0] * REFERENCE[1])
 }
 
 /// What [`Search::advance`] did.
@@ -188,27 +110,47 @@ pub enum Advance {
     Interrupted,
 }
 
-/// A run of the search in one world.
-pub struct Search<'w> {
+/// The paper's two objectives.
+pub const PAPER: [&dyn Objective; 2] = [&Nodes, &RingError];
+
+/// A run of the search in one world for `M` objectives.
+pub struct Search<'w, const M: usize = 2> {
     world: &'w World,
     settings: Settings,
-    grammar: Grammar,
+    objectives: [&'w dyn Objective; M],
+    variation: Box<dyn Variation + 'w>,
     de: de::Settings,
     state: State,
 }
 
 impl<'w> Search<'w> {
-    /// A run at its beginning, or at a saved state.
+    /// A run for the paper's objectives with the paper's variation, at its beginning or at a saved state.
     ///
     /// # Errors
     /// Settings that make no sense, with the value and what is needed.
     pub fn new(world: &'w World, settings: Settings, state: Option<State>) -> Result<Self, SettingsError> {
-        settings.check()?;
-        let de = settings.differential_evolution()?;
         let theta = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
         let grammar = Grammar::new(settings.motifs, settings.depth, theta);
+        Search::with(world, settings, PAPER, Box::new(grammar), state)
+    }
+}
+
+impl<'w, const M: usize> Search<'w, M> {
+    /// A run for other objectives, or with other variation; θ are tuned for f2 all the same.
+    ///
+    /// # Errors
+    /// Settings that make no sense, with the value and what is needed.
+    pub fn with(
+        world: &'w World,
+        settings: Settings,
+        objectives: [&'w dyn Objective; M],
+        variation: Box<dyn Variation + 'w>,
+        state: Option<State>,
+    ) -> Result<Self, SettingsError> {
+        settings.check()?;
+        let de = settings.differential_evolution()?;
         let fresh = State { generation: 0, evaluations: 0, population: Vec::new(), history: Vec::new() };
-        Ok(Search { world, settings, grammar, de, state: state.unwrap_or(fresh) })
+        Ok(Search { world, settings, objectives, variation, de, state: state.unwrap_or(fresh) })
     }
 
     /// The state after the last whole generation.
@@ -243,22 +185,21 @@ impl<'w> Search<'w> {
         self.state.evaluations += offspring.len() * self.settings.evaluations_each();
         self.state.generation += 1;
         let parents = std::mem::take(&mut self.state.population);
-        self.state.population = survivors(parents, offspring, self.settings.population);
+        self.state.population = self.survivors(parents, offspring);
         self.state.history.push(self.milestone());
         Advance::Generation
     }
 
     /// The next trees to tune, each with its own random stream; no structure twice, if it can be helped.
     fn breed(&self, count: usize) -> Vec<(Tree, ChaCha8Rng)> {
-        let scores: Vec<_> = self.state.population.iter().map(Individual::scores).collect();
-        let standings = nsga2::standings(&scores);
+        let standings = nsga2::standings(&self.scores(&self.state.population));
         let mut structures = HashSet::new();
         let individual = |place: usize| {
             let mut rng = ChaCha8Rng::seed_from_u64(self.settings.seed);
             rng.set_stream(u64::from(self.state.generation) << 32 | place as u64);
             let mut draw = || {
                 if standings.is_empty() {
-                    self.grammar.ramped(place, &mut rng)
+                    self.variation.create(place, &mut rng)
                 } else {
                     self.offspring(&standings, &mut rng)
                 }
@@ -276,15 +217,19 @@ impl<'w> Search<'w> {
         (0..count).map(individual).collect()
     }
 
+    fn scores(&self, individuals: &[Individual]) -> Vec<Scores<M>> {
+        individuals.iter().map(|individual| individual.scores(&self.objectives)).collect()
+    }
+
     fn offspring(&self, standings: &[Standing], rng: &mut ChaCha8Rng) -> Tree {
         let mut parent = || &self.state.population[nsga2::tournament(rng, standings)].tree;
         let (mother, father) = (parent(), parent());
         let child = if rng.random_bool(self.settings.crossover) {
-            self.grammar.cross(mother, father, rng)
+            self.variation.cross(mother, father, rng)
         } else {
             mother.clone()
         };
-        if rng.random_bool(self.settings.mutation) { self.grammar.mutate(&child, rng) } else { child }
+        if rng.random_bool(self.settings.mutation) { self.variation.mutate(&child, rng) } else { child }
     }
 
     /// DE over θ, starting from the θ the tree has inherited; fitness is f2 under Deb's rule.
@@ -308,38 +253,51 @@ impl<'w> Search<'w> {
         Milestone {
             evaluations: self.state.evaluations,
             best_f2: feasible.clone().map(|individual| individual.f2).min_by(f64::total_cmp),
-            feasible: feasible.count(),
+            feasible: feasible.clone().count(),
             front: self.front().iter().filter(|member| member.individual.is_feasible()).count(),
+            hypervolume: front_hypervolume(feasible.map(Individual::point)),
         }
     }
 
-    /// The non-dominated set with its knees, fewest nodes first. All feasible, unless nothing is: then the individuals
-    /// of least violation.
+    /// The non-dominated set with its knees in (f1, f2), fewest nodes first. All feasible, unless nothing is: then the
+    /// individuals of least violation.
     pub fn front(&self) -> Vec<FrontMember> {
-        front_of(&self.state.population)
+        let population = &self.state.population;
+        let mut front: Vec<&Individual> =
+            nsga2::non_dominated(&self.scores(population)).into_iter().map(|place| &population[place]).collect();
+        front.sort_by(|a, b| a.tree.size().cmp(&b.tree.size()).then(a.f2.total_cmp(&b.f2)));
+        front.dedup_by_key(|individual| individual.scores(&self.objectives).objectives.map(f64::to_bits));
+        let points: Vec<[f64; 2]> = front.iter().map(|individual| individual.point()).collect();
+        let by_angle = knee::knee_by_angle(&points, knee::Neighbours::Nearest);
+        let by_utility = knee::knee_by_utility(&points);
+        let members = front.into_iter().enumerate().map(|(place, individual)| FrontMember {
+            individual: individual.clone(),
+            knee: Knee { angle: by_angle == Some(place), utility: by_utility == Some(place) },
+        });
+        members.collect()
     }
-}
 
-/// NSGA-II survival among parents and offspring, of each structure only the best.
-fn survivors(parents: Vec<Individual>, offspring: Vec<Individual>, count: usize) -> Vec<Individual> {
-    let mut places = HashMap::new();
-    let mut unique: Vec<Individual> = Vec::new();
-    for individual in parents.into_iter().chain(offspring) {
-        match places.get(&individual.tree.structure()) {
-            Some(&place) => {
-                let standing: &mut Individual = &mut unique[place];
-                if individual.scores().dominates(&standing.scores()) {
-                    *standing = individual;
+    /// NSGA-II survival among parents and offspring, of each structure only the best.
+    fn survivors(&self, parents: Vec<Individual>, offspring: Vec<Individual>) -> Vec<Individual> {
+        let mut places = HashMap::new();
+        let mut unique: Vec<Individual> = Vec::new();
+        for individual in parents.into_iter().chain(offspring) {
+            match places.get(&individual.tree.structure()) {
+                Some(&place) => {
+                    let standing: &mut Individual = &mut unique[place];
+                    if individual.scores(&self.objectives).dominates(&standing.scores(&self.objectives)) {
+                        *standing = individual;
+                    }
+                }
+                None => {
+                    places.insert(individual.tree.structure(), unique.len());
+                    unique.push(individual);
                 }
             }
-            None => {
-                places.insert(individual.tree.structure(), unique.len());
-                unique.push(individual);
-            }
         }
+        let survivors = nsga2::survivors(&self.scores(&unique), self.settings.population);
+        survivors.into_iter().map(|place| unique[place].clone()).collect()
     }
-    let scores: Vec<_> = unique.iter().map(Individual::scores).collect();
-    nsga2::survivors(&scores, count).into_iter().map(|place| unique[place].clone()).collect()
 }
 
 /// Which of Branke's methods calls a front member a knee.
@@ -370,22 +328,3 @@ pub struct FrontMember {
     /// Whether it is a knee.
     pub knee: Knee,
 }
-
-fn front_of(population: &[Individual]) -> Vec<FrontMember> {
-    let scores: Vec<_> = population.iter().map(Individual::scores).collect();
-    let mut front: Vec<&Individual> =
-        nsga2::non_dominated(&scores).into_iter().map(|place| &population[place]).collect();
-    front.sort_by(|a, b| a.tree.size().cmp(&b.tree.size()).then(a.f2.total_cmp(&b.f2)));
-    front.dedup_by_key(|individual| (individual.tree.size(), individual.f2.to_bits()));
-    let points: Vec<[f64; 2]> = front.iter().map(|individual| individual.scores().objectives).collect();
-    let by_angle = knee::knee_by_angle(&points, knee::Neighbours::Nearest);
-    let by_utility = knee::knee_by_utility(&points);
-    let members = front.into_iter().enumerate().map(|(place, individual)| FrontMember {
-        individual: individual.clone(),
-        knee: Knee { angle: by_angle == Some(place), utility: by_utility == Some(place) },
-    });
-    members.collect()
-}
-
-#[cfg(test)]
-mod tests;

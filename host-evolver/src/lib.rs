@@ -7,6 +7,7 @@ pub mod evolve;
 pub mod figures;
 pub mod files;
 pub mod objective;
+pub mod objectives;
 pub mod published;
 pub mod report;
 pub mod run;

@@ -5,7 +5,7 @@
 
 use crate::deploy;
 use crate::describe;
-use crate::evolve::{FrontMember, Search, Settings, State};
+use crate::evolve::{FrontMember, Milestone, Search, Settings, State};
 use crate::figures;
 use crate::files::{self, FileError, blob_bytes};
 use crate::objective::{Model, World};
@@ -234,10 +234,11 @@ fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
 }
 
 fn history_csv(state: &State) -> String {
-    let mut text = String::from("evaluations,best_f2,feasible,front\n");
+    let mut text = String::from("evaluations,best_f2,feasible,front,hypervolume\n");
     for milestone in &state.history {
         let best = milestone.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-        text += &format!("{},{best},{},{}\n", milestone.evaluations, milestone.feasible, milestone.front);
+        let Milestone { evaluations, feasible, front, hypervolume, .. } = milestone;
+        text += &format!("{evaluations},{best},{feasible},{front},{hypervolume}\n");
     }
     text
 }

@@ -25,6 +25,16 @@ impl MotifSet {
     }
 }
 
+/// How trees come to be and change. Every call draws from the given random numbers only.
+pub trait Variation: Send + Sync {
+    /// Individual number `place` of an initial population.
+    fn create(&self, place: usize, rng: &mut dyn Rng) -> Tree;
+    /// A child of two trees; θ come along with their nodes.
+    fn cross(&self, mother: &Tree, father: &Tree, rng: &mut dyn Rng) -> Tree;
+    /// A changed tree.
+    fn mutate(&self, tree: &Tree, rng: &mut dyn Rng) -> Tree;
+}
+
 /// The space of trees: which motifs, how deep, which θ.
 #[derive(Clone, Debug)]
 pub struct Grammar {
@@ -37,14 +47,6 @@ impl Grammar {
     /// Trees of the given motifs with depth (in edges) and θ in the given inclusive ranges; least depth 1.
     pub fn new(motifs: MotifSet, depth: (usize, usize), theta: (f64, f64)) -> Grammar {
         Grammar { motifs: motifs.motifs(), depth: (depth.0.max(1), depth.1.max(depth.0).max(1)), theta }
-    }
-
-    /// Individual number `index` of a ramped half-and-half population: depths in turn, full and grown alternating.
-    pub fn ramped(&self, index: usize, rng: &mut impl Rng) -> Tree {
-        let (least, most) = self.depth;
-        let ramp = most - least + 1;
-        let depth = least + (index / 2) % ramp;
-        self.random(depth, index.is_multiple_of(2), rng)
     }
 
     /// A random tree of at most `depth` edges, with a motif at its root; full trees have all leaves at that depth.
@@ -68,29 +70,39 @@ impl Grammar {
             self.grow(depth - 1, full, false, rng, nodes);
         }
     }
+}
+
+impl Variation for Grammar {
+    /// Ramped half-and-half: depths in turn, full and grown alternating.
+    fn create(&self, place: usize, mut rng: &mut dyn Rng) -> Tree {
+        let (least, most) = self.depth;
+        let ramp = most - least + 1;
+        let depth = least + (place / 2) % ramp;
+        self.random(depth, place.is_multiple_of(2), &mut rng)
+    }
 
     /// Subtree crossover: a subtree of `mother` is replaced by one of `father` that keeps the child within the depth
-    /// range. θ come along with their nodes.
-    pub fn cross(&self, mother: &Tree, father: &Tree, rng: &mut impl Rng) -> Tree {
-        let point = pick(mother, |_| true, rng).unwrap_or(0);
+    /// range.
+    fn cross(&self, mother: &Tree, father: &Tree, mut rng: &mut dyn Rng) -> Tree {
+        let point = pick(mother, |_| true, &mut rng).unwrap_or(0);
         let room = self.depth.1 - mother.depths()[point];
         let heights = heights(father);
         let fits = |index: usize| {
             let height = heights[index];
             height <= room && (point > 0 || height >= self.depth.0)
         };
-        match pick(father, fits, rng) {
+        match pick(father, fits, &mut rng) {
             Some(donor) => mother.with_subtree(point, &father.nodes()[father.subtree(donor)]),
             None => mother.clone(),
         }
     }
 
     /// Subtree mutation: a random subtree is replaced by a freshly grown one that fits.
-    pub fn mutate(&self, tree: &Tree, rng: &mut impl Rng) -> Tree {
+    fn mutate(&self, tree: &Tree, mut rng: &mut dyn Rng) -> Tree {
         let point = rng.random_range(0..tree.size());
         let room = self.depth.1 - tree.depths()[point];
         let mut nodes = Vec::new();
-        self.grow(room, false, point == 0, rng, &mut nodes);
+        self.grow(room, false, point == 0, &mut rng, &mut nodes);
         tree.with_subtree(point, &nodes)
     }
 }
@@ -124,7 +136,7 @@ mod tests {
     #[test]
     fn ramped_trees_cover_the_depths_and_full_ones_are_full() {
         let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let trees: Vec<_> = (0..40).map(|i| grammar(MotifSet::Binary).ramped(i, &mut rng)).collect();
+        let trees: Vec<_> = (0..40).map(|i| grammar(MotifSet::Binary).create(i, &mut rng)).collect();
         for (index, tree) in trees.iter().enumerate() {
             let aim = 1 + (index / 2) % 4;
             assert!((1..=aim).contains(&tree.depth()));
@@ -138,7 +150,7 @@ mod tests {
     fn offspring_stay_in_the_grammar() {
         let grammar = grammar(MotifSet::All);
         let mut rng = ChaCha8Rng::seed_from_u64(2);
-        let mut trees: Vec<_> = (0..40).map(|i| grammar.ramped(i, &mut rng)).collect();
+        let mut trees: Vec<_> = (0..40).map(|i| grammar.create(i, &mut rng)).collect();
         let mut changed = 0;
         for round in 0..5000 {
             let (a, b) = (rng.random_range(0..40), rng.random_range(0..40));
@@ -157,6 +169,6 @@ mod tests {
     fn binary_trees_have_odd_sizes() {
         let grammar = grammar(MotifSet::Binary);
         let mut rng = ChaCha8Rng::seed_from_u64(3);
-        assert!((0..200).all(|i| grammar.ramped(i, &mut rng).size() % 2 == 1));
+        assert!((0..200).all(|i| grammar.create(i, &mut rng).size() % 2 == 1));
     }
 }

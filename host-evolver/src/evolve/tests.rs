@@ -87,3 +87,29 @@ fn senseless_settings_are_refused_by_name() {
         assert!(error.contains(word), "{error}");
     }
 }
+
+/// A third objective in one place: how deep the tree is.
+struct Depth;
+
+impl Objective for Depth {
+    fn name(&self) -> &'static str {
+        "depth"
+    }
+    fn value(&self, individual: &Individual) -> f64 {
+        individual.tree.depth() as f64
+    }
+}
+
+#[test]
+fn a_third_objective_needs_nothing_but_itself() {
+    let world = channel();
+    let grammar = Grammar::new(crate::variation::MotifSet::All, (1, 4), (0.0, 2.0));
+    let objectives: [&dyn Objective; 3] = [&Nodes, &RingError, &Depth];
+    let mut search = Search::with(&world, small(), objectives, Box::new(grammar), None).unwrap();
+    let go = AtomicBool::new(false);
+    while search.advance(&go, &|_| {}) == Advance::Generation {}
+    let front = search.front();
+    let scores: Vec<_> = front.iter().map(|member| member.individual.scores(&objectives)).collect();
+    assert!(scores.iter().all(|a| scores.iter().all(|b| !a.dominates(b))));
+    assert!(front.iter().all(|member| member.individual.is_feasible()));
+}

@@ -1,0 +1,107 @@
+//! What decides a run besides the scenario.
+
+use crate::search::de;
+use crate::variation::MotifSet;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Everything that decides a run besides the scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Budget: evaluations of f2, all counted.
+    pub evaluations: usize,
+    /// Individuals in a generation.
+    pub population: usize,
+    /// Motifs to build with.
+    pub motifs: MotifSet,
+    /// Least and greatest depth of a tree, in edges.
+    pub depth: (usize, usize),
+    /// Steepness k of every sigmoid.
+    pub steepness: f32,
+    /// Probability that an offspring has two parents instead of one.
+    pub crossover: f64,
+    /// Probability that an offspring is mutated.
+    pub mutation: f64,
+    /// Differential evolution of each new individual's θ.
+    pub de: DeSettings,
+}
+
+/// Parameters of DE/rand/1/bin.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DeSettings {
+    /// Vectors: NP.
+    pub population: usize,
+    /// Differential weight F.
+    pub weight: f64,
+    /// Crossover probability CR.
+    pub crossover: f64,
+    /// Generations of trials after the initial vectors.
+    pub generations: usize,
+}
+
+impl Default for Settings {
+    /// The paper's settings for the channel.
+    fn default() -> Self {
+        Settings {
+            seed: 1,
+            evaluations: 4000,
+            population: 40,
+            motifs: MotifSet::All,
+            depth: (1, 4),
+            steepness: 1.0,
+            crossover: 1.0,
+            mutation: 0.1,
+            de: DeSettings { population: 10, weight: 0.5, crossover: 0.9, generations: 1 },
+        }
+    }
+}
+
+/// Settings that no run can have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingsError(String);
+
+impl fmt::Display for SettingsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SettingsError {}
+
+impl Settings {
+    /// Evaluations one individual costs.
+    pub fn evaluations_each(&self) -> usize {
+        self.de.population * (1 + self.de.generations)
+    }
+
+    pub(super) fn differential_evolution(&self) -> Result<de::Settings, SettingsError> {
+        let DeSettings { population, weight, crossover, generations } = self.de;
+        de::Settings::new(population, weight, crossover, generations).map_err(|error| SettingsError(error.to_string()))
+    }
+
+    pub(super) fn check(&self) -> Result<(), SettingsError> {
+        self.differential_evolution()?;
+        let least = self.population * self.evaluations_each();
+        let faults = [
+            (self.population < 2, format!("population = {}: at least 2 are needed", self.population)),
+            (
+                self.evaluations < least,
+                format!("evaluations = {}: the first generation alone takes {least}", self.evaluations),
+            ),
+            (!(0.0..=1.0).contains(&self.crossover), format!("crossover = {} is no probability", self.crossover)),
+            (!(0.0..=1.0).contains(&self.mutation), format!("mutation = {} is no probability", self.mutation)),
+            (
+                self.depth.0 < 1 || self.depth.0 > self.depth.1 || self.depth.1 > 4,
+                format!("depth = {:?}: 1 ≤ least ≤ greatest ≤ 4 is needed", self.depth),
+            ),
+        ];
+        match faults.into_iter().find(|(faulty, _)| *faulty) {
+            Some((_, fault)) => Err(SettingsError(fault)),
+            None => Ok(()),
+        }
+    }
+}

@@ -16,6 +16,8 @@ pub enum Component {
     Sensors = 3,
     /// Messages lost by one receiver.
     Radio = 4,
+    /// Where random obstacles lie.
+    Obstacles = 5,
 }
 
 /// A stream of random numbers (PCG XSH-RR 64/32).

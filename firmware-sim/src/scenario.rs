@@ -5,9 +5,11 @@
 mod error;
 mod file;
 mod path;
+mod random;
 
 pub use error::ScenarioError;
 pub use path::Path;
+pub use random::RandomObstacles;
 
 use crate::geometry::Walls;
 use file::ScenarioFile;
@@ -151,6 +153,16 @@ impl Scenario {
         let mut points = self.boundary_samples();
         points.retain(|&p| targets.iter().any(|&t| (p - t).length() <= PERCEPTION_RANGE));
         points
+    }
+
+    /// The same world under another name, with other morphogens and another ring, whose numbers must be in the ranges that
+    /// their types give.
+    ///
+    /// # Errors
+    /// A number out of range.
+    pub fn with(&self, name: &str, morphogen: Morphogen, ring: Ring) -> Result<Scenario, ScenarioError> {
+        let changed = Scenario { name: name.to_owned(), morphogen, ring, ..self.clone() };
+        Scenario::try_from(ScenarioFile::from(changed))
     }
 
     /// The same world with every length multiplied by `factor`, which must be positive and finite: region, paths, walls,

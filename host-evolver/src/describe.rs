@@ -66,6 +66,24 @@ fn subtree(network: &Network<f32>, source: Source) -> report::SyntaxTree {
     }
 }
 
+/// Nodes of the syntax tree, functions and terminals: the paper's f1.
+pub fn tree_size(network: &Network<f32>) -> usize {
+    fn size(tree: &report::SyntaxTree) -> usize {
+        1 + tree.children.iter().map(size).sum::<usize>()
+    }
+    size(&syntax_tree(network))
+}
+
+/// The syntax tree in function notation, with θ in brackets: `(XNOR[0.9256] (NAND[0.8393] x1 x1) x2)`.
+pub fn expression(network: &Network<f32>) -> String {
+    fn write(tree: &report::SyntaxTree) -> String {
+        let Some(theta) = &tree.detail else { return tree.label.clone() };
+        let operands: String = tree.children.iter().map(|child| format!(" {}", write(child))).collect();
+        format!("({}[{theta}]{operands})", tree.label)
+    }
+    write(&syntax_tree(network))
+}
+
 /// The syntax tree as indented text.
 pub fn tree_text(network: &Network<f32>) -> String {
     fn draw(tree: &report::SyntaxTree, first: &str, rest: &str, text: &mut String) {

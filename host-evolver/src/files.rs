@@ -2,6 +2,8 @@
 
 use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::network::DEFAULT_GENES;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -46,6 +48,34 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     attempt().map_err(|error: std::io::Error| FileError::new(path, format!("cannot be written: {error}")))
 }
 
+/// Fills a new folder under a temporary name beside its place and renames it: it is there whole or not at all.
+///
+/// # Errors
+/// What `fill` says, or the operating system.
+pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileError>) -> Result<(), FileError> {
+    let cannot = |error: std::io::Error| FileError::new(place, format!("cannot be written: {error}"));
+    let above = place.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(above).map_err(cannot)?;
+    let unfinished = tempfile::Builder::new().prefix(".unfinished-").tempdir_in(above).map_err(cannot)?;
+    fill(unfinished.path())?;
+    set_usual_folder_permissions(unfinished.path()).map_err(cannot)?;
+    std::fs::rename(unfinished.path(), place).map_err(cannot)?;
+    // It is no longer where it would be deleted from.
+    let _ = unfinished.keep();
+    Ok(())
+}
+
+#[cfg(unix)]
+fn set_usual_folder_permissions(folder: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
+}
+
+#[cfg(not(unix))]
+fn set_usual_folder_permissions(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
 /// Temporary files are private; results are for everybody.
 #[cfg(unix)]
 fn set_usual_permissions(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
@@ -82,6 +112,66 @@ pub fn read_blob(path: &Path) -> Result<Blob, FileError> {
 pub fn blob_bytes(blob: &Blob) -> Result<Vec<u8>, grn_core::blob::BlobError> {
     let mut buffer = vec![0; max_encoded_size(DEFAULT_GENES)];
     Ok(blob.encode(&mut buffer)?.to_vec())
+}
+
+/// A value as JSON text.
+pub fn json(value: &impl Serialize) -> String {
+    // Plain structures of numbers and text always have a JSON form.
+    serde_json::to_string_pretty(value).map(|text| text + "\n").unwrap_or_default()
+}
+
+/// The value in a JSON file.
+///
+/// # Errors
+/// An unreadable file, or one that does not hold such a value.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
+    let damaged = |error: serde_json::Error| {
+        FileError::new(path, format!("damaged: {error}; delete its folder or choose another with --out"))
+    };
+    serde_json::from_str(&read_text(path)?).map_err(damaged)
+}
+
+/// The first difference between two values as JSON, in words: `settings.seed is 2 there and 1 now`.
+pub fn difference<T: Serialize>(ours: &T, theirs: &T) -> Option<String> {
+    let (ours, theirs) = (serde_json::to_value(ours).ok()?, serde_json::to_value(theirs).ok()?);
+    first_difference("", &ours, &theirs)
+}
+
+fn first_difference(place: &str, ours: &serde_json::Value, theirs: &serde_json::Value) -> Option<String> {
+    match (ours.as_object(), theirs.as_object()) {
+        (Some(a), Some(b)) => a.iter().find_map(|(key, value)| {
+            let other = b.get(key).unwrap_or(&serde_json::Value::Null);
+            first_difference(&format!("{place}{}{key}", if place.is_empty() { "" } else { "." }), value, other)
+        }),
+        _ if ours == theirs => None,
+        _ => Some(format!("{place} is {theirs} there and {ours} now")),
+    }
+}
+
+/// Lines of text fields as CSV.
+pub fn csv<const N: usize>(header: [&str; N], lines: impl IntoIterator<Item = [String; N]>) -> Vec<u8> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    for line in std::iter::once(header.map(String::from)).chain(lines) {
+        // Writing to memory cannot fail.
+        let _ = csv.write_record(&line);
+    }
+    csv.into_inner().unwrap_or_default()
+}
+
+/// The records of a CSV file with a header.
+///
+/// # Errors
+/// An unreadable file, or the first line that is no such record.
+pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
+    let text = read_text(path)?;
+    let records = csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect::<Result<_, _>>();
+    records.map_err(|error| FileError::new(path, format!("damaged: {error}; delete it or its folder")))
+}
+
+/// The SHA-256 of some bytes, hexadecimal.
+pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
+    use sha2::Digest;
+    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

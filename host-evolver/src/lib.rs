@@ -1,8 +1,10 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+pub mod campaign;
 pub mod cli;
 pub mod deploy;
 pub mod describe;
+pub mod eh_grn;
 pub mod evolve;
 pub mod figures;
 pub mod files;

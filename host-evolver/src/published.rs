@@ -18,12 +18,29 @@ impl Published {
     /// # Errors
     /// Never for the models of [`PUBLISHED`]; the type is that of any construction.
     pub fn network(&self) -> Result<Network<f32>, NetworkError> {
-        let genes = self.genes.iter().map(|&(motif, inputs, theta)| Gene {
+        self.with(self.genes.iter().map(|&(_, _, theta)| theta))
+    }
+
+    /// The same structure with other θ, in the order of the genes; the network ends where the θ end.
+    ///
+    /// # Errors
+    /// No θ, or one out of range.
+    pub fn with_thetas(&self, thetas: &[f64]) -> Result<Network<f32>, NetworkError> {
+        self.with(thetas.iter().map(|&theta| theta as f32))
+    }
+
+    fn with(&self, thetas: impl Iterator<Item = f32>) -> Result<Network<f32>, NetworkError> {
+        let genes = self.genes.iter().zip(thetas).map(|(&(motif, inputs, _), theta)| Gene {
             motif,
             inputs: inputs.iter().copied().collect(),
             theta,
         });
         Network::new(1.0, genes)
+    }
+
+    /// How many genes it has.
+    pub fn gene_count(&self) -> usize {
+        self.genes.len()
     }
 }
 

@@ -17,6 +17,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "manifest.json";
+/// The columns of a front.
+pub const FRONT_HEADER: [&str; 6] = ["nodes", "f2", "violation", "knee", "expression", "blob"];
 const CHECKPOINT: &str = "checkpoint.json";
 
 /// What a run was made from; equal manifests give equal results.
@@ -40,33 +42,14 @@ pub struct Manifest {
 impl Manifest {
     /// The manifest of a run by this software.
     pub fn new(scenario: &Scenario, settings: Settings, scale: f32) -> Self {
-        use sha2::Digest;
-        let digest = sha2::Sha256::digest(scenario.to_toml().as_bytes());
         Manifest {
             grn: env!("CARGO_PKG_VERSION").into(),
             blob_format: FORMAT_VERSION,
             scenario: scenario.name().into(),
-            scenario_sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
+            scenario_sha256: files::sha256(scenario.to_toml()),
             settings,
             scale,
         }
-    }
-
-    /// The first difference to another manifest, in words.
-    fn difference(&self, other: &Manifest) -> Option<String> {
-        let (ours, theirs) = (serde_json::to_value(self).ok()?, serde_json::to_value(other).ok()?);
-        first_difference("", &ours, &theirs)
-    }
-}
-
-fn first_difference(place: &str, ours: &serde_json::Value, theirs: &serde_json::Value) -> Option<String> {
-    match (ours.as_object(), theirs.as_object()) {
-        (Some(a), Some(b)) => a.iter().find_map(|(key, value)| {
-            let other = b.get(key).unwrap_or(&serde_json::Value::Null);
-            first_difference(&format!("{place}{}{key}", if place.is_empty() { "" } else { "." }), value, other)
-        }),
-        _ if ours == theirs => None,
-        _ => Some(format!("{place} is {theirs} there and {ours} now")),
     }
 }
 
@@ -114,7 +97,7 @@ impl RunFolder {
             return Err(FileError::new(path, way_out).into());
         }
         files::write(&run.path("scenario.toml"), scenario.to_toml())?;
-        files::write(&path, json(manifest))?;
+        files::write(&path, files::json(manifest))?;
         Ok(run)
     }
 
@@ -129,13 +112,13 @@ impl RunFolder {
         if !path.exists() {
             return Ok((RunFolder::create(folder, manifest, scenario)?, None));
         }
-        let found: Manifest = read_json(&path)?;
-        if let Some(difference) = manifest.difference(&found) {
+        let found: Manifest = files::read_json(&path)?;
+        if let Some(difference) = files::difference(manifest, &found) {
             let way_out = "give the same settings to --resume, or choose another folder with --out";
             return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")).into());
         }
         let checkpoint = run.path(CHECKPOINT);
-        let state = if checkpoint.exists() { Some(read_json(&checkpoint)?) } else { None };
+        let state = if checkpoint.exists() { Some(files::read_json(&checkpoint)?) } else { None };
         Ok((run, state))
     }
 
@@ -149,7 +132,7 @@ impl RunFolder {
     /// # Errors
     /// What the operating system says.
     pub fn save(&self, state: &State) -> Result<(), RunError> {
-        Ok(files::write(&self.path(CHECKPOINT), json(state))?)
+        Ok(files::write(&self.path(CHECKPOINT), files::json(state))?)
     }
 
     /// Writes front, blobs and pictures; returns the blob of the knee that is deployed.
@@ -200,21 +183,7 @@ impl RunFolder {
     }
 }
 
-fn json(value: &impl Serialize) -> String {
-    // Plain structures of numbers and text always have a JSON form.
-    serde_json::to_string_pretty(value).map(|text| text + "\n").unwrap_or_default()
-}
-
-fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, FileError> {
-    let damaged = |error: serde_json::Error| {
-        FileError::new(path, format!("damaged: {error}; delete the folder or choose another with --out"))
-    };
-    serde_json::from_str(&files::read_text(path)?).map_err(damaged)
-}
-
 fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    let header = ["nodes", "f2", "violation", "knee", "expression", "blob"].map(String::from);
     let lines = rows.iter().map(|(member, blob)| {
         let individual = &member.individual;
         [
@@ -226,11 +195,7 @@ fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
             blob.clone(),
         ]
     });
-    for line in std::iter::once(header).chain(lines) {
-        // Writing to memory cannot fail.
-        let _ = csv.write_record(&line);
-    }
-    csv.into_inner().unwrap_or_default()
+    files::csv(FRONT_HEADER, lines)
 }
 
 fn history_csv(state: &State) -> String {

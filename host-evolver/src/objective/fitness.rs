@@ -87,6 +87,11 @@ impl<'w> Judge<'w> {
         Judge { world, tracer: Tracer::new(world) }
     }
 
+    /// The world models are judged in.
+    pub fn world(&self) -> &'w World {
+        self.world
+    }
+
     /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold. If the tree is worse than its rival
     /// the evaluation stops as soon as that is sure, with a value between the rival's and its own.
     pub fn judge_tree(&mut self, tree: &Tree, steepness: f32, rival: Option<&Evaluation>) -> Evaluation {
@@ -102,7 +107,9 @@ impl<'w> Judge<'w> {
         self.judge_against(model, None)
     }
 
-    fn judge_against(&mut self, model: &Model, rival: Option<&Evaluation>) -> Evaluation {
+    /// The same; if the model is worse than its rival the evaluation stops as soon as that is sure, with a value between
+    /// the rival's and its own.
+    pub fn judge_against(&mut self, model: &Model, rival: Option<&Evaluation>) -> Evaluation {
         let count = self.world.snapshots().len() as f64;
         let (mut sum, mut left) = (Evaluation { f2: 0.0, violation: 0.0 }, count);
         for (snapshot, contours) in self.tracer.trace_all(model) {

@@ -1,0 +1,172 @@
+//! One run of one method in one scenario with one seed: the unit of work, whole in its folder or not there.
+
+use super::method::{Method, Outcome};
+use super::plan::{Plan, slug};
+use crate::deploy::{self, DEFAULT_SCALE};
+use crate::evolve::Knee;
+use crate::files::{self, FileError, blob_bytes};
+use crate::objective::World;
+use crate::run::FRONT_HEADER;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+const MANIFEST: &str = "manifest.json";
+
+/// What decides a run; equal manifests give equal results.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Manifest {
+    grn: String,
+    scenario: String,
+    scenario_sha256: String,
+    evaluations: usize,
+    method: Method,
+    seed: u64,
+}
+
+/// A run by its places in the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// Place of the scenario.
+    pub scenario: usize,
+    /// Place of the method.
+    pub method: usize,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// A line of a run's `front.csv`.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Member {
+    /// f1.
+    pub nodes: usize,
+    /// f2.
+    pub f2: f64,
+    /// Constraint violation.
+    pub violation: f64,
+    /// Which knee it is, in words; empty for none.
+    pub knee: String,
+}
+
+/// A line of a run's `history.csv`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct Moment {
+    /// Evaluations of f2 spent.
+    pub evaluations: usize,
+    /// Best f2 of a feasible model so far.
+    pub best_f2: Option<f64>,
+    /// Share of the box below the reference that feasible models dominate.
+    pub hypervolume: f64,
+}
+
+impl Unit {
+    /// All runs of a plan.
+    pub fn all(plan: &Plan) -> Vec<Unit> {
+        let pairs = (0..plan.scenarios.len()).flat_map(|scenario| {
+            (0..plan.methods.len()).map(move |method| (scenario, method))
+        });
+        pairs.flat_map(|(scenario, method)| (1..=plan.seeds).map(move |seed| Unit { scenario, method, seed })).collect()
+    }
+
+    /// Its folder within the campaign's.
+    pub fn folder(self, plan: &Plan) -> PathBuf {
+        let scenario = slug(plan.scenarios[self.scenario].scenario.name());
+        let method = slug(&plan.methods[self.method].name);
+        Path::new("runs").join(scenario).join(method).join(format!("{:03}", self.seed))
+    }
+
+    fn manifest(self, plan: &Plan) -> Manifest {
+        let planned = &plan.scenarios[self.scenario];
+        Manifest {
+            grn: env!("CARGO_PKG_VERSION").into(),
+            scenario: planned.scenario.name().into(),
+            scenario_sha256: files::sha256(planned.scenario.to_toml()),
+            evaluations: planned.evaluations,
+            method: plan.methods[self.method].method.clone(),
+            seed: self.seed,
+        }
+    }
+
+    /// Whether the run is in a campaign's folder.
+    ///
+    /// # Errors
+    /// A run with this name that was made from something else.
+    pub fn is_done(self, plan: &Plan, campaign: &Path) -> Result<bool, FileError> {
+        let path = campaign.join(self.folder(plan)).join(MANIFEST);
+        if !path.exists() {
+            return Ok(false);
+        }
+        match files::difference(&self.manifest(plan), &files::read_json(&path)?) {
+            None => Ok(true),
+            Some(difference) => {
+                let way_out = "choose another folder with --out, or delete this run";
+                Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")))
+            }
+        }
+    }
+
+    /// Runs it and puts its folder in place. Returns whether it was done, and not stopped.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn run(self, plan: &Plan, campaign: &Path, world: &World, stop: &AtomicBool) -> Result<bool, FileError> {
+        let planned = &plan.scenarios[self.scenario];
+        let method = &plan.methods[self.method].method;
+        let Some(outcome) = method.run(world, planned.evaluations, self.seed, stop) else { return Ok(false) };
+        let place = campaign.join(self.folder(plan));
+        files::write_folder(&place, |folder| self.write(plan, folder, &outcome))?;
+        Ok(true)
+    }
+
+    fn write(self, plan: &Plan, folder: &Path, outcome: &Outcome) -> Result<(), FileError> {
+        let morphogen = plan.scenarios[self.scenario].scenario.morphogen();
+        let chosen = chosen(outcome.front.iter().map(|solution| solution.knee));
+        let mut rows = Vec::new();
+        for (place, solution) in outcome.front.iter().enumerate() {
+            let blob = deploy::blob(solution.network.clone(), &morphogen, DEFAULT_SCALE);
+            let bytes = blob_bytes(&blob).map_err(|error| FileError::new(folder, error))?;
+            let name = format!("{place:02}-{}-nodes.grn", solution.nodes);
+            if place == chosen {
+                files::write(&folder.join("knee.grn"), &bytes)?;
+            }
+            files::write(&folder.join(&name), bytes)?;
+            rows.push([
+                solution.nodes.to_string(),
+                solution.f2.to_string(),
+                solution.violation.to_string(),
+                solution.knee.to_string(),
+                solution.expression(),
+                name,
+            ]);
+        }
+        files::write(&folder.join("front.csv"), files::csv(FRONT_HEADER, rows))?;
+        let lines = outcome.history.iter().map(|moment| {
+            let best = moment.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
+            [moment.evaluations.to_string(), best, moment.hypervolume.to_string()]
+        });
+        files::write(&folder.join("history.csv"), files::csv(["evaluations", "best_f2", "hypervolume"], lines))?;
+        files::write(&folder.join(MANIFEST), files::json(&self.manifest(plan)))
+    }
+
+    /// The front of a run that is done.
+    ///
+    /// # Errors
+    /// A damaged file.
+    pub fn front(self, plan: &Plan, campaign: &Path) -> Result<Vec<Member>, FileError> {
+        files::read_csv(&campaign.join(self.folder(plan)).join("front.csv"))
+    }
+
+    /// The history of a run that is done.
+    ///
+    /// # Errors
+    /// A damaged file.
+    pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Moment>, FileError> {
+        files::read_csv(&campaign.join(self.folder(plan)).join("history.csv"))
+    }
+}
+
+/// The place of the knee that is deployed: the first if there is none.
+pub fn chosen(knees: impl Iterator<Item = Knee>) -> usize {
+    knees.into_iter().position(|knee| knee.utility).unwrap_or(0)
+}

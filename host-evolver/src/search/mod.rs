@@ -6,6 +6,7 @@
 //! | [`nsga2`] | Deb's constrained dominance, non-dominated sorting, crowding, survival, binary tournament |
 //! | [`real`] | operators for real vectors (SBX, polynomial mutation) and NSGA-II built from them |
 //! | [`de`] | differential evolution DE/rand/1/bin for any fitness that can be compared |
+//! | [`cmaes`] | CMA-ES, whole or one generation at a time, for any fitness that can be compared |
 //! | [`knee`] | which point of a two-objective front is the knee: by angle, by marginal utility |
 //! | [`hypervolume`] | the exact area a two-objective front dominates |
 //! | [`bounds`] | the box a real vector lives in |
@@ -51,6 +52,7 @@
 //! ```
 
 pub mod bounds;
+pub mod cmaes;
 pub mod de;
 pub mod hypervolume;
 pub mod knee;

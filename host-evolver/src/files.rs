@@ -8,6 +8,9 @@ use std::fmt;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// How names of files and folders begin while they are being written.
+const UNFINISHED: &str = ".unfinished-";
+
 /// What went wrong with a file.
 #[derive(Debug)]
 pub struct FileError {
@@ -38,7 +41,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let attempt = || {
         std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::Builder::new().prefix(".unfinished-").tempfile_in(folder)?;
+        let mut file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)?;
         file.write_all(content.as_ref())?;
         file.as_file().sync_data()?;
         set_usual_permissions(&file)?;
@@ -56,12 +59,45 @@ pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileErr
     let cannot = |error: std::io::Error| FileError::new(place, format!("cannot be written: {error}"));
     let above = place.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(above).map_err(cannot)?;
-    let unfinished = tempfile::Builder::new().prefix(".unfinished-").tempdir_in(above).map_err(cannot)?;
+    let unfinished = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(above).map_err(cannot)?;
     fill(unfinished.path())?;
     set_usual_folder_permissions(unfinished.path()).map_err(cannot)?;
     std::fs::rename(unfinished.path(), place).map_err(cannot)?;
     // It is no longer where it would be deleted from.
     let _ = unfinished.keep();
+    Ok(())
+}
+
+/// Copies the files of a folder into another.
+///
+/// # Errors
+/// What the operating system says.
+pub fn copy_files(from: &Path, to: &Path) -> Result<(), FileError> {
+    let cannot = |error: std::io::Error| FileError::new(from, format!("cannot be copied: {error}"));
+    for entry in std::fs::read_dir(from).map_err(cannot)? {
+        let entry = entry.map_err(cannot)?;
+        std::fs::copy(entry.path(), to.join(entry.file_name())).map_err(cannot)?;
+    }
+    Ok(())
+}
+
+/// Deletes what killed processes left behind in a folder and below.
+///
+/// # Errors
+/// What the operating system says.
+pub fn remove_unfinished(folder: &Path) -> Result<(), FileError> {
+    let cannot = |error: std::io::Error| FileError::new(folder, format!("cannot be tidied: {error}"));
+    for entry in std::fs::read_dir(folder).map_err(cannot)? {
+        let entry = entry.map_err(cannot)?;
+        let is_folder = entry.file_type().map_err(cannot)?.is_dir();
+        let unfinished = entry.file_name().to_string_lossy().starts_with(UNFINISHED);
+        match (is_folder, unfinished) {
+            (true, true) => std::fs::remove_dir_all(entry.path()).map_err(cannot)?,
+            (true, false) => remove_unfinished(&entry.path())?,
+            (false, true) => std::fs::remove_file(entry.path()).map_err(cannot)?,
+            (false, false) => {}
+        }
+    }
     Ok(())
 }
 
@@ -156,6 +192,18 @@ pub fn csv<const N: usize>(header: [&str; N], lines: impl IntoIterator<Item = [S
         let _ = csv.write_record(&line);
     }
     csv.into_inner().unwrap_or_default()
+}
+
+/// Writes records as CSV, with a header of their fields' names if there are any.
+///
+/// # Errors
+/// What the operating system says, with the path.
+pub fn write_csv<T: Serialize>(path: &Path, records: &[T]) -> Result<(), FileError> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    for record in records {
+        csv.serialize(record).map_err(|error| FileError::new(path, error))?;
+    }
+    write(path, csv.into_inner().unwrap_or_default())
 }
 
 /// The records of a CSV file with a header.

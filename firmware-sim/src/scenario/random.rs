@@ -34,7 +34,9 @@ impl RandomObstacles {
             () if !(self.density > 0.0 && self.density <= 0.5) => {
                 fault("density", self.density, "a share above 0 and at most 0.5 is needed")
             }
-            () if !(least > 0.0 && least.is_finite()) => fault("radius[0]", least, "must be a positive length in metres"),
+            () if !(least > 0.0 && least.is_finite()) => {
+                fault("radius[0]", least, "must be a positive length in metres")
+            }
             () if !(greatest >= least && greatest.is_finite()) => {
                 fault("radius[1]", greatest, "must be at least radius[0] and finite")
             }
@@ -97,12 +99,14 @@ impl Scenario {
             }
             missed += 1;
             if missed == THROWS {
-                let reached = format!("no room beyond {:.3}; less density or clearance is needed", covered / (width * height));
+                let reached =
+                    format!("no room beyond {:.3}; less density or clearance is needed", covered / (width * height));
                 return Err(ScenarioError::new("density", obstacles.density, reached));
             }
         }
         let polygon = |(place, disc): (usize, &Disc)| {
-            Polygon::new(disc.outline()).map_err(|_| ScenarioError::new(format!("obstacle {place}"), disc.radius, "too small"))
+            Polygon::new(disc.outline())
+                .map_err(|_| ScenarioError::new(format!("obstacle {place}"), disc.radius, "too small"))
         };
         let walls = discs.iter().enumerate().map(polygon).collect::<Result<_, _>>()?;
         let name = format!("{}-{}", self.name, obstacles.seed);

@@ -69,9 +69,9 @@ impl Method {
     /// Whether it can work with that budget; if not, what is wrong.
     pub(super) fn check(&self, evaluations: usize) -> Result<(), String> {
         match *self {
-            Method::Mogp { motifs, de_generations } => Method::settings(motifs, de_generations, evaluations, 1)
-                .check()
-                .map_err(|error| error.to_string()),
+            Method::Mogp { motifs, de_generations } => {
+                Method::settings(motifs, de_generations, evaluations, 1).check().map_err(|error| error.to_string())
+            }
             Method::EhGrn { .. } if evaluations < eh_grn::POPULATION => {
                 Err(format!("evaluations = {evaluations}: one generation takes {}", eh_grn::POPULATION))
             }
@@ -119,13 +119,7 @@ fn mogp(world: &World, settings: Settings, stop: &AtomicBool) -> Option<Outcome>
     Some(Outcome { front, history: progress.collect() })
 }
 
-fn baseline(
-    world: &World,
-    structure: Structure,
-    evaluations: usize,
-    seed: u64,
-    stop: &AtomicBool,
-) -> Option<Outcome> {
+fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
     let (tuned, history) = eh_grn::search(structure, world, evaluations, seed, stop)?;
     let front = vec![Solution {
         network: structure.network(&tuned.thetas)?,

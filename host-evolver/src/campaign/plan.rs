@@ -143,9 +143,9 @@ impl Plan {
             let world = load(&table.file)?;
             let worlds = match &table.random {
                 None => vec![world],
-                Some(random) => random.worlds(&world).map_err(|error| {
-                    FileError::new(path, format!("transfer {:?}: {error}", table.name))
-                })?,
+                Some(random) => random
+                    .worlds(&world)
+                    .map_err(|error| FileError::new(path, format!("transfer {:?}: {error}", table.name)))?,
             };
             transfers.push(PlannedTransfer { name: table.name, from: table.from, worlds });
         }
@@ -160,7 +160,8 @@ impl Plan {
         }
         unique("scenario", self.scenarios.iter().map(|planned| planned.scenario.name()))?;
         unique("method", self.methods.iter().map(|planned| planned.name.as_str()))?;
-        unique("transfer", self.transfers.iter().map(|planned| planned.name.as_str()))?;
+        let transfers = self.transfers.iter().map(|planned| planned.name.as_str());
+        unique("transfer", self.scenarios.iter().map(|planned| planned.scenario.name()).chain(transfers))?;
         unique("model", self.models.iter().map(|planned| planned.name.as_str()))?;
         if self.scenarios.is_empty() || self.methods.is_empty() {
             return Err("at least one [[scenario]] and one [[method]] are needed".into());

@@ -63,9 +63,8 @@ pub struct Moment {
 impl Unit {
     /// All runs of a plan.
     pub fn all(plan: &Plan) -> Vec<Unit> {
-        let pairs = (0..plan.scenarios.len()).flat_map(|scenario| {
-            (0..plan.methods.len()).map(move |method| (scenario, method))
-        });
+        let pairs = (0..plan.scenarios.len())
+            .flat_map(|scenario| (0..plan.methods.len()).map(move |method| (scenario, method)));
         pairs.flat_map(|(scenario, method)| (1..=plan.seeds).map(move |seed| Unit { scenario, method, seed })).collect()
     }
 

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod campaign;
 mod draw;
 mod eval;
 mod evolve;
@@ -26,6 +27,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not 
 enum Command {
     /// Evolve controllers for a scenario, then simulate the knee of the front.
     Evolve(evolve::Arguments),
+    /// Compare methods over scenarios and seeds, and try their models in other worlds.
+    Campaign(campaign::Arguments),
     /// Run a blob on every robot of a simulated swarm.
     Simulate(simulate::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
@@ -64,6 +67,7 @@ fn about<E: fmt::Display>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure
 pub fn run() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Evolve(arguments) => evolve::run(&arguments),
+        Command::Campaign(arguments) => campaign::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),

@@ -83,7 +83,7 @@ impl Settings {
         de::Settings::new(population, weight, crossover, generations).map_err(|error| SettingsError(error.to_string()))
     }
 
-    pub(super) fn check(&self) -> Result<(), SettingsError> {
+    pub(crate) fn check(&self) -> Result<(), SettingsError> {
         self.differential_evolution()?;
         let least = self.population * self.evaluations_each();
         let faults = [

@@ -1,0 +1,139 @@
+//! `grn campaign`.
+
+use super::{Answer, Failure, interrupt, print};
+use crate::campaign::{Campaign, Measure, Plan, Shard, Stage, Tables};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Where progress cannot be drawn it is told this often.
+const SELDOM: Duration = Duration::from_secs(30);
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The campaign: scenarios, methods, models, transfers, seeds.
+    file: PathBuf,
+    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Threads to work with; the results do not depend on it [default: all cores].
+    #[arg(long)]
+    threads: Option<NonZeroUsize>,
+    /// Do only the runs of one part of several, for instance 2/3.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Take over the runs of this folder first; may be given several times.
+    #[arg(long, value_name = "DIR")]
+    merge: Vec<PathBuf>,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    let plan = Plan::load(&arguments.file)?;
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
+    let campaign = Campaign::new(plan, &folder);
+    for other in &arguments.merge {
+        if !other.is_dir() {
+            return Err(Failure::Input(format!("--merge {}: there is no such folder", other.display())));
+        }
+        let taken = campaign.merge(other)?;
+        eprintln!("{taken} runs taken over from {}", other.display());
+    }
+    let stop = interrupt::watch()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let progress = Progress::new(campaign.work());
+    let stage = pool.install(|| {
+        campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), stop, &|evaluations| progress.add(evaluations))
+    })?;
+    progress.bar.finish_and_clear();
+    let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
+    match stage {
+        Stage::Done => {
+            print(text(&Campaign::tables(&folder)?))?;
+            print(format!("\ntables and figures in {}", folder.display()))?;
+            Ok(Answer::Yes)
+        }
+        stage if stopped => Err(Failure::Interrupted(format!("{stage}; go on with the same command"))),
+        stage => {
+            print(format!(
+                "{stage} in {}; the tables follow when all are: run the other parts, then once more with --merge",
+                folder.display()
+            ))?;
+            Ok(Answer::Yes)
+        }
+    }
+}
+
+struct Progress {
+    bar: ProgressBar,
+    told: std::sync::Mutex<Instant>,
+}
+
+impl Progress {
+    fn new(work: u64) -> Progress {
+        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed} · {eta} left");
+        let bar = ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
+    }
+
+    fn add(&self, evaluations: u64) {
+        self.bar.inc(evaluations);
+        let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if self.bar.is_hidden() && told.elapsed() > SELDOM {
+            *told = Instant::now();
+            let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
+            eprintln!("{share} %, {} s left", self.bar.eta().as_secs());
+        }
+    }
+}
+
+/// The tables as a person reads them.
+fn text(tables: &Tables) -> String {
+    let mut text = String::new();
+    let number = |measure: Measure, value: f64| match measure {
+        Measure::BestNodes | Measure::KneeNodes => format!("{value:.0}"),
+        _ => format!("{value:.5}"),
+    };
+    for measure in Measure::ALL {
+        text += &format!(
+            "{}\n{:<28}{:<26}{:>10}  {:>27}\n",
+            measure.words(),
+            "scenario",
+            "method",
+            "feasible",
+            "median (quartiles)"
+        );
+        for row in tables.summaries.iter().filter(|row| row.measure == measure) {
+            let [lower, median, upper] = [row.lower, row.median, row.upper].map(|value| number(measure, value));
+            let quartiles = format!("{median} ({lower} to {upper})");
+            let feasible = format!("{}/{}", row.feasible, row.runs);
+            text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
+        }
+        text.push('\n');
+    }
+    text += &format!(
+        "{:<28}{:<14}{:<52}{:>10}{:>8}\n",
+        "scenario", "measure", "better than the baseline?", "p (Holm)", "A12"
+    );
+    for row in &tables.comparisons {
+        let pair = format!("{} / {}", row.method, row.baseline);
+        text += &format!(
+            "{:<28}{:<14}{pair:<52}{:>10.1e}{:>8.3}\n",
+            row.scenario,
+            row.measure.short(),
+            row.p_holm,
+            row.a12
+        );
+    }
+    if !tables.transfers.is_empty() {
+        text +=
+            &format!("\n{:<28}{:<28}{:<26}{:>9}  {}\n", "tried in", "model", "evolved for", "success", "95 % interval");
+    }
+    for row in &tables.transfers {
+        let interval = format!("{:.1} to {:.1} %", 100.0 * row.low, 100.0 * row.high);
+        text +=
+            &format!("{:<28}{:<28}{:<26}{:>7.1} %  {interval}\n", row.transfer, row.method, row.from, 100.0 * row.rate);
+    }
+    text
+}

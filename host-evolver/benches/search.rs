@@ -5,7 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use host_evolver::search::nsga2::{Scores, sort, standings};
 use host_evolver::search::problems::{unit_box, zdt1};
-use host_evolver::search::{bounds::Bounds, de, real};
+use host_evolver::search::{bounds::Bounds, cmaes, de, real};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -51,6 +51,16 @@ fn runs(c: &mut Criterion) {
             let mut rng = Pcg64Mcg::seed_from_u64(1);
             let sphere = |x: &[f64], _: Option<&f64>| x.iter().map(|x| x * x).sum::<f64>();
             de::minimise(&settings, &bounds, &[], &mut rng, sphere, de::at_most)
+        });
+    });
+    group.bench_function("CMA-ES, 10-D Rosenbrock, 5000 evaluations", |b| {
+        let settings = cmaes::Settings::new(10, 0.5, 5000).expect("usual settings are accepted");
+        let bounds = Bounds::cube(10, -1e3, 1e3).expect("an interval");
+        let rosenbrock =
+            |x: &[f64]| x.windows(2).map(|w| 100.0 * (w[1] - w[0] * w[0]).powi(2) + (1.0 - w[0]).powi(2)).sum::<f64>();
+        b.iter(|| {
+            let mut rng = Pcg64Mcg::seed_from_u64(1);
+            cmaes::minimise(&settings, &bounds, &[0.0; 10], None, &mut rng, rosenbrock, de::at_most)
         });
     });
     group.finish();

@@ -7,8 +7,8 @@
 //! population as it was when the generation began.
 //!
 //! A mutant coordinate beyond a bound is drawn again, uniformly between the base vector's coordinate `x_r1` and
-//! that bound (bounce-back; Price, Storn, Lampinen 2005, section 4.3), so trials always lie in the box and do
-//! not pile up on its walls.
+//! that bound (bounce-back; Price, Storn, Lampinen 2005, "Differential Evolution: A Practical Approach to Global
+//! Optimization"), so trials always lie in the box and do not pile up on its walls.
 
 mod settings;
 #[cfg(test)]

@@ -175,7 +175,7 @@ fn extend_hull(hull: &mut Vec<usize>, points: &[[f64; 2]], indices: impl Iterato
 }
 
 /// The angle at every point between the lines to its neighbours on the front, on the side of the ideal point,
-/// in radians (section 3.1 of the paper): π where the front is straight, up to 3π/2 at a knee like a corner,
+/// in radians (the paper's angle-based measure): π where the front is straight, up to 3π/2 at a knee like a corner,
 /// down to π/2 in a notch. What is missing beyond an end is a vertical line up on the left, a horizontal one on
 /// the right, as if the front went on so for ever. A single point therefore has 3π/2.
 ///
@@ -201,7 +201,7 @@ pub fn knee_by_angle(points: &[[f64; 2]], neighbours: Neighbours) -> Option<usiz
     front.pick(&front.angles(neighbours), PI + STRAIGHT)
 }
 
-/// The expected marginal utility of every point (section 3.2 of the paper): how much is lost, on average over
+/// The expected marginal utility of every point (the paper's utility-based measure): how much is lost, on average over
 /// the weights `w` uniform in [0, 1] of the utility `w f1 + (1 - w) f2` of the scaled objectives, if the point
 /// were not there and whoever chose it had to take the next best. Exact: the utility of the best is piecewise
 /// linear in `w` and is integrated piece by piece, in O(n log n) for all points.

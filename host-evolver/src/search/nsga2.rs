@@ -102,9 +102,19 @@ impl Standing {
 /// O(M n²) at worst.
 #[must_use]
 pub fn sort<const M: usize>(scores: &[Scores<M>]) -> Vec<u32> {
+    ranks(&in_order(scores))
+}
+
+/// Keys and indices, by violation, then objectives, then index.
+fn in_order<const M: usize>(scores: &[Scores<M>]) -> Vec<(Scores<M>, usize)> {
     let mut sorted: Vec<(Scores<M>, usize)> = scores.iter().map(Scores::keys).zip(0..).collect();
     sorted.sort_unstable_by(|(a, i), (b, j)| a.cmp_keys(b).then(i.cmp(j)));
-    let mut ranks = vec![0; scores.len()];
+    sorted
+}
+
+/// The rank of every entry, by index.
+fn ranks<const M: usize>(sorted: &[(Scores<M>, usize)]) -> Vec<u32> {
+    let mut ranks = vec![0; sorted.len()];
     // Each distinct violation is a world of its own, whose first front follows the last front of the one before.
     let mut first_rank = 0;
     for group in sorted.chunk_by(|(a, _), (b, _)| a.violation == b.violation) {
@@ -158,14 +168,17 @@ fn peel<const M: usize>(group: &[(Scores<M>, usize)], first_rank: u32, ranks: &m
 /// If `ranks` is shorter than `scores`.
 #[must_use]
 pub fn crowding<const M: usize>(scores: &[Scores<M>], ranks: &[u32]) -> Vec<f64> {
-    let keys: Vec<[f64; M]> = scores.iter().map(|s| s.keys().objectives).collect();
-    let mut distances = vec![0.0; scores.len()];
-    let mut order: Vec<usize> = (0..scores.len()).collect();
-    let by_objectives = |&a: &usize, &b: &usize| {
-        let pairs = keys[a].iter().zip(&keys[b]);
-        pairs.fold(Ordering::Equal, |order, (a, b)| order.then_with(|| a.total_cmp(b)))
-    };
-    order.sort_unstable_by(|a, b| ranks[*a].cmp(&ranks[*b]).then_with(|| by_objectives(a, b)).then(a.cmp(b)));
+    crowding_in_order(&in_order(scores), ranks)
+}
+
+/// [`crowding`] of sorted entries.
+fn crowding_in_order<const M: usize>(sorted: &[(Scores<M>, usize)], ranks: &[u32]) -> Vec<f64> {
+    let mut keys = vec![[0.0; M]; sorted.len()];
+    sorted.iter().for_each(|(scores, index)| keys[*index] = scores.objectives);
+    let mut distances = vec![0.0; sorted.len()];
+    let mut order: Vec<usize> = sorted.iter().map(|(_, index)| *index).collect();
+    // Fronts one after the other, each by objectives and then index: entries of one rank have one violation.
+    order.sort_by_key(|&i| ranks[i]);
     order.dedup_by(|later, first| ranks[*later] == ranks[*first] && keys[*later] == keys[*first]);
     for front in order.chunk_by_mut(|&a, &b| ranks[a] == ranks[b]) {
         if M == 0 {
@@ -200,8 +213,9 @@ fn add_gaps<const M: usize>(keys: &[[f64; M]], front: &mut [usize], m: usize, di
 /// [`sort`] and [`crowding`] of every entry.
 #[must_use]
 pub fn standings<const M: usize>(scores: &[Scores<M>]) -> Vec<Standing> {
-    let ranks = sort(scores);
-    let distances = crowding(scores, &ranks);
+    let sorted = in_order(scores);
+    let ranks = ranks(&sorted);
+    let distances = crowding_in_order(&sorted, &ranks);
     ranks.into_iter().zip(distances).map(|(rank, crowding)| Standing { rank, crowding }).collect()
 }
 

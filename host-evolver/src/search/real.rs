@@ -2,6 +2,7 @@
 //! polynomial mutation (Deb and Goyal 1996), both in the bounded form of Deb's own NSGA-II code, in front of the
 //! survival and the tournament of [`nsga2`](super::nsga2).
 
+mod power;
 #[cfg(test)]
 mod tests;
 
@@ -11,6 +12,7 @@ use rand::{Rng, RngExt};
 
 use super::bounds::Bounds;
 use super::nsga2::{Scores, Standing, best, standings, tournaments};
+use power::Exponent;
 
 /// Why an argument was rejected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +46,7 @@ impl core::error::Error for SettingsError {}
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Strength {
     probability: f64,
-    eta: f64,
+    exponent: Exponent,
 }
 
 impl Strength {
@@ -55,7 +57,7 @@ impl Strength {
         if !(eta >= 0.0 && eta.is_finite()) {
             return Err(SettingsError::Index(eta));
         }
-        Ok(Self { probability, eta })
+        Ok(Self { probability, exponent: Exponent::new(eta) })
     }
 }
 
@@ -79,7 +81,8 @@ impl Sbx {
     /// `(η + 1) β^η / 2` below 1 and `(η + 1) / (2 β^(η + 2))` above, cut off at the bounds. Which child gets
     /// which value is a coin's choice. Parents in the box have children in the box.
     pub fn cross<R: Rng + ?Sized>(&self, rng: &mut R, bounds: &Bounds, a: &mut [f64], b: &mut [f64]) {
-        if rng.random::<f64>() >= self.0.probability {
+        let Strength { probability, exponent } = self.0;
+        if rng.random::<f64>() >= probability {
             return;
         }
         for ((a, b), &(lo, hi)) in a.iter_mut().zip(b).zip(bounds.intervals()) {
@@ -93,15 +96,16 @@ impl Sbx {
                 continue;
             }
             let draw = rng.random::<f64>();
-            // The room a child has on its own side, as a multiple of the distance between the parents.
-            let spread = |room: f64| {
-                let alpha = 2.0 - libm::pow(1.0 + 2.0 * room / apart, -(self.0.eta + 1.0));
+            // β to the power of η + 1, for the room a child has on its own side.
+            let raised = |room: f64| {
+                let alpha = 2.0 - 1.0 / exponent.raise(1.0 + 2.0 * room / apart);
                 let scaled = draw * alpha;
-                let base = if scaled <= 1.0 { scaled } else { 1.0 / (2.0 - scaled) };
-                libm::pow(base, 1.0 / (self.0.eta + 1.0))
+                // One quotient rather than two branches, which would be guessed wrongly half of the time.
+                let (above, below) = if scaled <= 1.0 { (scaled, 1.0) } else { (1.0, 2.0 - scaled) };
+                above / below
             };
-            let low = 0.5 * (y1 + y2 - spread(y1 - lo) * apart);
-            let high = 0.5 * (y1 + y2 + spread(hi - y2) * apart);
+            let [left, right] = exponent.roots([raised(y1 - lo), raised(hi - y2)]);
+            let (low, high) = (0.5 * (y1 + y2 - left * apart), 0.5 * (y1 + y2 + right * apart));
             let (low, high) = (low.max(lo).min(hi), high.max(lo).min(hi));
             (*a, *b) = if rng.random::<bool>() { (low, high) } else { (high, low) };
         }
@@ -125,18 +129,19 @@ impl PolynomialMutation {
     /// Changes `x` in place. A change is a share of the interval's width, drawn from the density
     /// `(η + 1) (1 - |δ|)^η / 2` cut off at the bounds on either side. A vector in the box stays in the box.
     pub fn mutate<R: Rng + ?Sized>(&self, rng: &mut R, bounds: &Bounds, x: &mut [f64]) {
-        let power = self.0.eta + 1.0;
+        let Strength { probability, exponent } = self.0;
         for (x, &(lo, hi)) in x.iter_mut().zip(bounds.intervals()) {
             let width = hi - lo;
-            if rng.random::<f64>() >= self.0.probability || width <= 0.0 {
+            if rng.random::<f64>() >= probability || width <= 0.0 {
                 continue;
             }
             let draw = rng.random::<f64>();
             let (down, room) = if draw < 0.5 { (true, *x - lo) } else { (false, hi - *x) };
             // The share of the density that points this way, from 0 at the wall to 1 at no change.
             let share = if down { 2.0 * draw } else { 2.0 * (1.0 - draw) };
-            let wall = libm::pow(1.0 - room / width, power);
-            let step = 1.0 - libm::pow(share + (1.0 - share) * wall, 1.0 / power);
+            let wall = exponent.raise(1.0 - room / width);
+            let [stay] = exponent.roots([share + (1.0 - share) * wall]);
+            let step = 1.0 - stay;
             let moved = if down { *x - step * width } else { *x + step * width };
             *x = moved.max(lo).min(hi);
         }
@@ -224,6 +229,7 @@ fn select<const M: usize>(population: &mut Vec<Individual<M>>, n: usize) -> Vec<
     let scores: Vec<Scores<M>> = population.iter().map(|i| i.scores).collect();
     let places = standings(&scores);
     let kept = best(&places, n);
-    *population = kept.iter().map(|&i| population[i].clone()).collect();
+    let mut take = |&i: &usize| Individual { x: core::mem::take(&mut population[i].x), scores: population[i].scores };
+    *population = kept.iter().map(&mut take).collect();
     kept.into_iter().map(|i| places[i]).collect()
 }

@@ -142,19 +142,23 @@ fn nan_is_worst_and_does_not_stick() {
     assert!(at_most(&1.0, &f64::NAN) && !at_most(&f64::NAN, &1.0) && at_most(&f64::NAN, &f64::NAN));
 }
 
+/// Evaluations until the 10-D sphere in [-5.12, 5.12] is at most 1e-8, in pagmo's `de` (pygmo 2.20.0, variant 7, which
+/// is rand/1/bin, F 0.5, CR 0.9, 50 vectors, seeds 1 to 51): quartiles. It counts whole generations.
+const PAGMO: [usize; 3] = [10_650, 10_900, 11_150];
+
 #[test]
-fn ten_dimensional_sphere() {
+fn the_sphere_takes_as_many_evaluations_as_in_pagmo() {
     let settings = Settings::new(50, 0.5, 0.9, 400).unwrap();
     let bounds = Bounds::cube(10, -5.12, 5.12).unwrap();
-    let mut counts: Vec<usize> = (0..15)
+    let mut counts: Vec<usize> = (0..51)
         .map(|seed| {
             let (_, log) = logged(&settings, &bounds, &[], seed);
-            1 + log.iter().position(|x| sphere(x) <= 1e-8).unwrap()
+            (1 + log.iter().position(|x| sphere(x) <= 1e-8).unwrap()).next_multiple_of(50)
         })
         .collect();
     counts.sort_unstable();
-    println!("evaluations to 1e-8: median {}, {} to {}", counts[7], counts[0], counts[14]);
-    assert!((9_000..13_000).contains(&counts[7]), "{counts:?}");
+    println!("evaluations to 1e-8: {:?}, pagmo's {PAGMO:?}", [counts[12], counts[25], counts[38]]);
+    assert!((PAGMO[0]..=PAGMO[2]).contains(&counts[25]), "{counts:?}");
 }
 
 #[test]

@@ -192,3 +192,36 @@ fn the_knee_of_do2dk_is_one_of_its_knees() {
         }
     }
 }
+
+/// Where the scaled DO2DK front bends most, from the curvature `(f1' f2'' - f2' f1'') / |f'|³` of the function itself;
+/// the front is symmetric, so the mirrored point does too.
+fn sharpest(knees: u32) -> [f64; 2] {
+    let scale = do2dk(&[0.0], knees, 0.0)[0];
+    let at = |x: f64| do2dk(&[x], knees, 0.0).map(|f| f / scale);
+    let step = 1e-4;
+    let bend = |x: f64| {
+        let (a, b, c) = (at(x - step), at(x), at(x + step));
+        let first = [0, 1].map(|m| (c[m] - a[m]) / (2.0 * step));
+        let second = [0, 1].map(|m| (c[m] - 2.0 * b[m] + a[m]) / (step * step));
+        // Turning right, as x1 walks the front from its lower end, is bulging towards the ideal point.
+        (second[0] * first[1] - second[1] * first[0]) / libm::pow(libm::hypot(first[0], first[1]), 3.0)
+    };
+    let xs = (1..2000).map(|i| f64::from(i) / 2000.0);
+    at(xs.max_by(|a, b| bend(*a).total_cmp(&bend(*b))).unwrap())
+}
+
+#[test]
+fn the_knee_of_do2dk_is_where_it_bends_most() {
+    for k in 1..=4 {
+        let [x, y] = sharpest(k);
+        for n in [51, 101, 201, 401] {
+            let front = do2dk_front(k, n);
+            for pick in PICKS {
+                let p = front[pick(&front).unwrap()];
+                let distance = libm::hypot(p[0] - x, p[1] - y).min(libm::hypot(p[0] - y, p[1] - x));
+                println!("K = {k}, n = {n}: {p:?}, {distance:.4} from ({x:.4}, {y:.4})");
+                assert!(distance < 0.01, "K = {k}, n = {n}: {p:?}, {distance} from ({x}, {y})");
+            }
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! How expression levels move: dy/dt = -y + R, by RK4, and where they come to rest.
 
-use crate::network::{Gene, Network};
+use crate::network::Network;
 use crate::scalar::{Arithmetic, Dual, Scalar, Stages};
 use core::fmt;
 use heapless::Vec;
@@ -149,7 +149,7 @@ impl<S: Scalar, const N: usize> Expression<S, N> {
 mod tests {
     use super::*;
     use crate::motif::Motif;
-    use crate::network::Source;
+    use crate::network::{Gene, Source};
     use crate::scalar::Q8_24;
     use std::vec::Vec;
 

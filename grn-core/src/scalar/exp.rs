@@ -5,7 +5,7 @@
 const TO_WHOLE: f32 = 12_582_912.0;
 const EXPONENT_ONE: u32 = 127 << 23;
 /// ln 2 in two parts; whole numbers up to 2^7 times the first are exact.
-const LN_2_HIGH: f32 = 0.693_359_375;
+const LN_2_HIGH: f32 = 355.0 / 512.0;
 const LN_2_LOW: f32 = -2.121_944_4e-4;
 /// (e^r - 1 - r) / r² for |r| ≤ ln 2 / 2, from Cephes' `expf`.
 const SERIES: [f32; 6] = [0.5, 1.666_666_5e-1, 4.166_579_6e-2, 8.333_452e-3, 1.398_2e-3, 1.987_569_1e-4];
@@ -17,7 +17,7 @@ const HIGHEST: f32 = 88.0;
 ///
 /// e^x = 2^n · e^r with n the whole number nearest to x / ln 2.
 #[inline]
-#[cfg_attr(feature = "micromath", expect(dead_code, reason = "micromath has its own"))]
+#[cfg_attr(feature = "micromath", allow(dead_code, reason = "micromath has its own"))]
 pub(super) fn exp(x: f32) -> f32 {
     // Written so that NaN passes.
     let limited = if x > HIGHEST { HIGHEST } else { x };

@@ -15,6 +15,8 @@ pub struct Grid {
     columns: usize,
     rows: usize,
     starts: Vec<u32>,
+    /// By the order in which robots are given.
+    cells: Vec<u32>,
     robots: Vec<u16>,
     xs: Vec<f64>,
     ys: Vec<f64>,
@@ -30,6 +32,7 @@ impl Grid {
             columns: 1,
             rows: 1,
             starts: Vec::with_capacity(MAX_SIDE * MAX_SIDE + 2),
+            cells: Vec::with_capacity(robots),
             robots: vec![0; robots],
             xs: vec![0.0; robots],
             ys: vec![0.0; robots],
@@ -49,8 +52,11 @@ impl Grid {
         self.rows = (extent.y * self.per_cell) as usize + 1;
         self.starts.clear();
         self.starts.resize(self.columns * self.rows + 2, 0);
+        self.cells.clear();
         for (_, position) in robots.clone() {
-            let cell = self.cell(position);
+            let (column, row) = self.column_row(position);
+            let cell = row * self.columns + column;
+            self.cells.push(cell as u32);
             self.starts[cell + 2] += 1;
         }
         let mut sum = 0;
@@ -58,8 +64,8 @@ impl Grid {
             sum += *start;
             *start = sum;
         }
-        for (robot, position) in robots {
-            let next = self.cell(position) + 1;
+        for ((robot, position), &cell) in robots.zip(&self.cells) {
+            let next = cell as usize + 1;
             let place = self.starts[next] as usize;
             self.starts[next] += 1;
             self.robots[place] = robot;
@@ -68,15 +74,10 @@ impl Grid {
         }
     }
 
-    fn cell(&self, position: Point<f64>) -> usize {
-        let (column, row) = self.column_row(position);
-        row * self.columns + column
-    }
-
     fn column_row(&self, position: Point<f64>) -> (usize, usize) {
-        let column = ((position.x - self.low.x) * self.per_cell) as usize;
-        let row = ((position.y - self.low.y) * self.per_cell) as usize;
-        (column.min(self.columns - 1), row.min(self.rows - 1))
+        // By way of i32, to which floating-point numbers are converted in fewer instructions.
+        let cell = |metres: f64, cells: usize| ((metres * self.per_cell) as i32).clamp(0, cells as i32 - 1) as usize;
+        (cell(position.x - self.low.x, self.columns), cell(position.y - self.low.y, self.rows))
     }
 
     /// Calls `candidate(robot, squared distance)` for every robot within the grid's reach of `position`, and for others

@@ -135,10 +135,9 @@ impl Radio {
         let draws = self.losses[receiver].draws();
         let mut nearest = [NOBODY; MAX_HEARD];
         self.grid.around(position, |sender, squared| {
-            let lost = u64::from(draws.at(sender)) < self.lost_below;
-            let heard = (squared <= self.range_squared) & (usize::from(sender) != receiver) & !lost;
-            let mut moving = if heard { rank(sender, squared) } else { NOBODY };
-            if moving < nearest[MAX_HEARD - 1] {
+            let in_range = (squared <= self.range_squared) & (usize::from(sender) != receiver);
+            let mut moving = if in_range { rank(sender, squared) } else { NOBODY };
+            if moving < nearest[MAX_HEARD - 1] && u64::from(draws.at(sender)) >= self.lost_below {
                 for slot in &mut nearest {
                     (*slot, moving) = (moving.min(*slot), moving.max(*slot));
                 }

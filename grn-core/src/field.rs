@@ -64,11 +64,9 @@ pub trait Obstacles<S> {
 /// Obstacles known as single points on their boundary.
 impl<S: Scalar> Obstacles<S> for [Point<S>] {
     fn offset_from_nearest(&self, point: Point<S>) -> Option<Vector<S>> {
-        // An eighth of each offset is squared: in Q8.24 squares of up to 90 m fit.
-        let eighth_squared = |v: Vector<S>| v.x.halved(3) * v.x.halved(3) + v.y.halved(3) * v.y.halved(3);
         let offsets = self.iter().map(|&obstacle| point - obstacle);
         let nearest = offsets
-            .map(|offset| (eighth_squared(offset), offset))
+            .map(|offset| (offset.square(), offset))
             .reduce(|best, next| if next.0 < best.0 { next } else { best })?;
         Some(nearest.1)
     }

@@ -45,17 +45,26 @@ impl<S: Scalar> Vector<S> {
         Vector { x: -self.y, y: self.x }
     }
 
+    /// Length squared, for comparisons.
+    pub fn square(self) -> S::Square {
+        self.x.square_sum(self.y)
+    }
+
+    /// Length, and the same direction with length 1; `None` for a zero vector.
+    pub fn polar(self) -> Option<(S, Self)> {
+        let length = self.length();
+        (length > S::ZERO).then(|| (length, Vector { x: self.x / length, y: self.y / length }))
+    }
+
     /// The same direction with length 1, or `None` for a zero vector.
     pub fn direction(self) -> Option<Self> {
-        let length = self.length();
-        (length > S::ZERO).then(|| Vector { x: self.x / length, y: self.y / length })
+        self.polar().map(|(_, direction)| direction)
     }
 
     /// The vector, shortened to `limit` if it is longer.
     #[must_use]
     pub fn limited(self, limit: S) -> Self {
-        let length = self.length();
-        if length > limit { self * (limit / length) } else { self }
+        if self.square() > limit.square_sum(S::ZERO) { self * (limit / self.length()) } else { self }
     }
 }
 

@@ -84,8 +84,8 @@ impl Motif {
     /// The regulation R of dy/dt = -y + R, with σ(x) = 1 / (1 + e^(-k(x - θ))).
     ///
     /// `inputs` holds as many expression levels as [`Motif::arity`] allows; a missing one counts as 0.
-    pub fn regulation<A: Arithmetic>(self, inputs: &[A], theta: A, k: A) -> A {
-        let sig = |x: A| ((x - theta) * k).logistic();
+    pub fn regulation<A: Arithmetic>(self, inputs: &[A], theta: A::Real, k: A::Real) -> A {
+        let sig = |x: A| x.sigmoid(theta, k);
         let mut levels = inputs.iter().copied();
         let a = levels.next().unwrap_or(A::ZERO);
         let b = levels.next().unwrap_or(A::ZERO);

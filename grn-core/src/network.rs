@@ -54,6 +54,13 @@ pub struct Gene<S> {
     pub theta: S,
 }
 
+impl<S> Gene<S> {
+    /// Whether it reads x1 and x2 only, no gene.
+    pub(crate) fn reads_inputs_only(&self) -> bool {
+        self.inputs.iter().all(|source| !matches!(source, Source::Gene(_)))
+    }
+}
+
 /// Why a list of genes is not a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -225,19 +232,25 @@ impl<S: Scalar, const N: usize> Network<S, N> {
         y: &mut Y,
         mut visit: impl FnMut(&mut Y, usize, A),
     ) {
-        let k = A::constant(self.steepness);
         for (index, gene) in self.genes.iter().enumerate() {
-            let mut operands = [A::ZERO; MAX_INPUTS];
-            for (operand, source) in operands.iter_mut().zip(&gene.inputs) {
-                *operand = match *source {
-                    Source::X1 => x[0],
-                    Source::X2 => x[1],
-                    Source::Gene(earlier) => y.level(usize::from(earlier)),
-                };
-            }
-            let operands = operands.get(..gene.inputs.len()).unwrap_or(&operands);
-            visit(y, index, gene.motif.regulation(operands, A::constant(gene.theta), k));
+            let regulation = self.regulation(gene, x, y);
+            visit(y, index, regulation);
         }
+    }
+
+    /// The regulation R of one gene.
+    #[inline]
+    pub(crate) fn regulation<A: Arithmetic<Real = S>>(&self, gene: &Gene<S>, x: [A; 2], y: &impl Levels<A>) -> A {
+        let mut operands = [A::ZERO; MAX_INPUTS];
+        for (operand, source) in operands.iter_mut().zip(&gene.inputs) {
+            *operand = match *source {
+                Source::X1 => x[0],
+                Source::X2 => x[1],
+                Source::Gene(earlier) => y.level(usize::from(earlier)),
+            };
+        }
+        let operands = operands.get(..gene.inputs.len()).unwrap_or(&operands);
+        gene.motif.regulation(operands, gene.theta, self.steepness)
     }
 }
 

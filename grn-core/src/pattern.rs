@@ -119,7 +119,8 @@ impl<S: Scalar> Pattern<S> {
         let mut point = start;
         let (mut error, mut here) = look(start);
         for _ in 0..NEWTON_STEPS {
-            let mut step = newton_step(error, self.error_gradient(network, &here))?.limited(longest);
+            let (distance, direction) = newton_step(error, self.error_gradient(network, &here))?;
+            let mut step = direction * distance.clamp(-longest, longest);
             let better = (0..=BACKTRACKS).find_map(|_| {
                 let tried = look(point + step);
                 let falls = tried.0.abs() < error.abs();
@@ -148,11 +149,11 @@ pub struct Candidate<S> {
 const NEWTON_STEPS: usize = 12;
 const BACKTRACKS: usize = 4;
 
-/// The Newton step -φ ∇φ / |∇φ|², in metres: from here to the pattern, to first order. `None` for a vanishing gradient.
-pub fn newton_step<S: Scalar>(error: S, gradient: Vector<S>) -> Option<Vector<S>> {
-    let slope = gradient.length();
-    let direction = gradient.direction()?;
-    Some(direction * -(error / slope))
+/// The Newton step -φ ∇φ / |∇φ|², in metres: from here to the pattern, to first order. As a signed distance and the unit
+/// vector along which it is, which points inwards. `None` for a vanishing gradient.
+pub fn newton_step<S: Scalar>(error: S, gradient: Vector<S>) -> Option<(S, Vector<S>)> {
+    let (slope, direction) = gradient.polar()?;
+    Some((-(error / slope), direction))
 }
 
 #[cfg(test)]

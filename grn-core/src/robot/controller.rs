@@ -8,7 +8,7 @@ use super::motion::{Bearing, Motion};
 use super::percept::{Command, Millimetres, Percept};
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
-use crate::field::Field;
+use crate::field::{Field, Morphogens};
 use crate::geometry::{Point, Vector};
 use crate::network::{DEFAULT_GENES, Network};
 use crate::pattern::{NoPattern, Pattern};
@@ -114,7 +114,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
     /// One control tick, every 1/32 s: perceive, express genes, move.
     pub fn tick(&mut self, percept: &Percept) -> Command {
         self.tick = self.tick.wrapping_add(1);
-        let [east, north] = percept.position.map(|micrometres| S::from_ratio(micrometres, 1_000_000));
+        let [east, north] = percept.position.map(S::from_millionths);
         let here = Vector::new(east, north);
         self.knowledge.update(percept, here);
         let heading = heading(percept.heading);
@@ -125,16 +125,15 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
 
     fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept) -> Vector<S> {
         let targets = self.knowledge.targets();
-        let distance = |target: &KnownTarget<S>| (target.position - here).length();
+        let distance = |target: &KnownTarget<S>| (target.position - here).square();
         let nearest = targets.iter().reduce(|a, b| if distance(b) < distance(a) { b } else { a });
         let Some(&nearest) = nearest else { return Vector::ZERO };
         let own = self.own_target(percept).and_then(|own| targets.iter().find(|target| target.target == own));
         let own = own.copied().unwrap_or(nearest);
         let known = targets.iter().map(|target| target.position);
         let morphogens = self.field.at(here, known, self.knowledge.obstacles());
-        for _ in 0..self.steps_per_tick {
-            self.expression.advance(&self.network, morphogens.x1, morphogens.x2, self.step);
-        }
+        let Morphogens { x1, x2, .. } = morphogens;
+        self.expression.advance(&self.network, x1, x2, self.step, self.steps_per_tick);
         let bearing = Bearing {
             error: self.pattern.error(self.expression.morphogen(&self.network)),
             gradient: self.pattern.error_gradient(&self.network, &morphogens),

@@ -44,6 +44,7 @@ pub fn reflex<S: Scalar>(proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S
 /// Turns velocities into wheel speeds; drives backwards when that is the shorter turn.
 #[derive(Clone, Debug)]
 pub struct Drive<S> {
+    /// How much faster than the middle a wheel rolls per unit of sideways error, m/s.
     turn: S,
     backwards: bool,
 }
@@ -54,7 +55,7 @@ const SLOW: (i32, i32) = (1, 100);
 impl<S: Scalar> Drive<S> {
     /// `turn`: turning rate per unit of sideways error, 1/s.
     pub fn new(turn: S) -> Self {
-        Drive { turn, backwards: false }
+        Drive { turn: turn * S::from_f64(AXLE / 2.0), backwards: false }
     }
 
     /// (left, right) wheel speeds in steps per second for a velocity in metres per second.
@@ -71,15 +72,14 @@ impl<S: Scalar> Drive<S> {
         let aside = if self.backwards { -aside } else { aside };
         let along = if self.backwards { along.min(S::ZERO) } else { along.max(S::ZERO) };
         let slow = S::from_ratio(SLOW.0, SLOW.1);
-        let rate = self.turn * (aside / speed.max(slow));
-        let difference = rate * S::from_f64(AXLE / 2.0);
+        let difference = self.turn * (aside / speed.max(slow));
         wheel_steps(along - difference, along + difference)
     }
 }
 
 /// Wheel speeds in steps per second, both slowed in proportion if one is beyond the motors.
 fn wheel_steps<S: Scalar>(left: S, right: S) -> (i16, i16) {
-    let steps = |speed: S| (speed / S::from_f64(METRES_PER_STEP * 1000.0)).times_to_i32(1000);
+    let steps = |speed: S| (speed * S::from_f64(0.001 / METRES_PER_STEP)).times_to_i32(1000);
     let (left, right) = (steps(left), steps(right));
     let fastest = left.abs().max(right.abs());
     let limit = i32::from(MAX_WHEEL_SPEED);

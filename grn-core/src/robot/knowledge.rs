@@ -2,33 +2,27 @@
 
 use super::epuck2::TICKS_PER_SECOND;
 use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
+use super::obstacles::{KnownObstacle, ObstacleMap};
 use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
 use heapless::Vec;
 
-/// The most obstacle points kept in mind: the nearest ones.
-pub const MAX_OBSTACLES: usize = 16;
 /// The most neighbours kept in mind: the nearest ones.
 pub const MAX_NEIGHBOURS: usize = 8;
 
 /// A target nobody has seen for 5 s is forgotten; one sighting more than 255 ticks old cannot be reported.
 const FORGET_TARGET_TICKS: u8 = 5 * TICKS_PER_SECOND as u8;
-/// A neighbour not heard for 1 s is forgotten.
-const FORGET_NEIGHBOUR_TICKS: u8 = TICKS_PER_SECOND as u8;
-/// Obstacle ages are counted in units of 8 ticks; forgotten after 10 s.
+/// A neighbour not heard for 1 s is forgotten within another quarter.
+const FORGET_NEIGHBOUR_TICKS: u32 = TICKS_PER_SECOND as u32;
+/// Obstacle ages are counted in units of 8 ticks.
 const OBSTACLE_AGE_UNIT: u32 = 8;
-const FORGET_OBSTACLE_UNITS: u8 = (10 * TICKS_PER_SECOND as u32 / OBSTACLE_AGE_UNIT) as u8;
 
 /// Everything known, in world metres, extrapolated to the current tick.
-///
-/// Who is nearer is decided in whole millimetres, which messages are in anyway: alike for every number type, and without
-/// a square root for each of the many points that arrive in a tick.
 #[derive(Clone, Debug)]
 pub struct Knowledge<S> {
     targets: Vec<KnownTarget<S>, MAX_TARGETS>,
-    obstacles: Vec<KnownObstacle, MAX_OBSTACLES>,
-    obstacle_points: Vec<Point<S>, MAX_OBSTACLES>,
+    obstacles: ObstacleMap<S>,
     neighbours: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
     tick: u32,
 }
@@ -45,85 +39,35 @@ pub struct KnownTarget<S> {
     age: u8,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct KnownObstacle {
-    position: Millimetres,
-    age: u8,
-}
-
 /// Another robot nearby.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbour<S> {
     robot: u8,
     /// Where it was when last heard.
     pub position: Point<S>,
-    place: Millimetres,
-    age: u8,
+    /// How far away it was then, squared, mm².
+    square: u32,
+    /// The tick.
+    heard: u32,
 }
 
-/// What every obstacle point that arrives in a tick is compared with. There are dozens a tick, so the comparisons are over
-/// whole arrays and without branches.
-struct Comparison {
-    here: Millimetres,
-    /// Coordinates of the known points, packed; those from `known` on mean nothing.
-    keys: [u32; MAX_OBSTACLES],
-    known: usize,
-    /// Squared distances of the known points from here, mm².
-    squares: [u64; MAX_OBSTACLES],
-    farthest: usize,
-    largest: u64,
-}
-
-impl Comparison {
-    fn new(obstacles: &[KnownObstacle], here: Millimetres) -> Self {
-        let (keys, squares) = ([0; MAX_OBSTACLES], [0; MAX_OBSTACLES]);
-        let mut comparison = Comparison { here, keys, known: 0, squares, farthest: 0, largest: 0 };
-        for (index, obstacle) in obstacles.iter().enumerate() {
-            comparison.put(index, obstacle.position);
-        }
-        comparison.known = obstacles.len();
-        comparison.find_farthest();
-        comparison
-    }
-
-    fn key(position: Millimetres) -> u32 {
-        (u32::from(position.x as u16) << 16) | u32::from(position.y as u16)
-    }
-
-    fn put(&mut self, index: usize, position: Millimetres) {
-        if let (Some(key), Some(square)) = (self.keys.get_mut(index), self.squares.get_mut(index)) {
-            *key = Self::key(position);
-            *square = squared_distance(position, self.here);
-        }
-    }
-
-    fn find_farthest(&mut self) {
-        (self.farthest, self.largest) = largest_of(self.squares.into_iter());
-    }
-
-    /// Which known point is exactly here, if any.
-    fn position_of(&self, position: Millimetres) -> Option<usize> {
-        let key = Self::key(position);
-        let bits =
-            self.keys.iter().zip(0_u32..).fold(0, |bits, (&known, index)| bits | (u32::from(known == key) << index));
-        let index = bits.trailing_zeros() as usize;
-        (index < self.known).then_some(index)
-    }
+/// The squared distance between two places, mm², at most what a `u32` holds (65 m).
+pub(super) fn squared_distance(a: Millimetres, b: Millimetres) -> u32 {
+    // The square of 16 bits' difference fits 32 bits without a sign.
+    let square = |a: i16, b: i16| {
+        let difference = i32::from(a) - i32::from(b);
+        difference.wrapping_mul(difference) as u32
+    };
+    square(a.x, b.x).saturating_add(square(a.y, b.y))
 }
 
 /// The first of the largest numbers: its index and itself; (0, 0) for none.
-fn largest_of(numbers: impl Iterator<Item = u64>) -> (usize, u64) {
-    numbers.enumerate().reduce(|a, b| if b.1 > a.1 { b } else { a }).unwrap_or((0, 0))
-}
-
-/// The squared distance between two places, mm².
-fn squared_distance(a: Millimetres, b: Millimetres) -> u64 {
-    let square = |a: i16, b: i16| u64::from(a.abs_diff(b)) * u64::from(a.abs_diff(b));
-    square(a.x, b.x) + square(a.y, b.y)
+pub(super) fn largest_of(numbers: impl Iterator<Item = u32>) -> (usize, u32) {
+    (0..).zip(numbers).fold((0, 0), |best, next| if next.1 > best.1 { next } else { best })
 }
 
 pub(super) fn metres<S: Scalar>(position: Millimetres) -> Point<S> {
-    let metre = |mm: i16| S::from_ratio(i32::from(mm), 1000);
+    let metre = |mm: i16| S::from_millionths(i32::from(mm) * 1000);
     Vector::new(metre(position.x), metre(position.y))
 }
 
@@ -134,21 +78,16 @@ fn millimetres<S: Scalar>(position: Point<S>) -> Millimetres {
 
 impl<S: Scalar> Knowledge<S> {
     pub fn new() -> Self {
-        Knowledge {
-            targets: Vec::new(),
-            obstacles: Vec::new(),
-            obstacle_points: Vec::new(),
-            neighbours: Vec::new(),
-            tick: 0,
-        }
+        Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Vec::new(), tick: 0 }
     }
 
     pub fn targets(&self) -> &[KnownTarget<S>] {
         &self.targets
     }
 
+    /// The obstacle points of which one is the nearest.
     pub fn obstacles(&self) -> &[Point<S>] {
-        &self.obstacle_points
+        self.obstacles.near()
     }
 
     pub fn neighbours(&self) -> &[Neighbour<S>] {
@@ -157,51 +96,39 @@ impl<S: Scalar> Knowledge<S> {
 
     /// Takes one tick's percept in; `here` is the robot's own position.
     pub fn update(&mut self, percept: &Percept, here: Point<S>) {
-        self.grow_older();
+        let here = millimetres(here);
+        self.grow_older(here);
         for sighting in &percept.targets {
             self.see_target(*sighting);
         }
-        if percept.obstacles.is_empty() && percept.heard.is_empty() {
-            return;
-        }
-        let here = millimetres(here);
-        let mut comparison = Comparison::new(&self.obstacles, here);
         for &position in &percept.obstacles {
-            self.learn_obstacle(KnownObstacle { position, age: 0 }, &mut comparison);
+            self.obstacles.learn(KnownObstacle { position, age: 0 });
         }
         for message in &percept.heard {
             if let Some(report) = &message.target {
                 self.hear_of_target(report);
             }
             for &ObstacleReport { position, age } in &message.obstacles {
-                self.learn_obstacle(KnownObstacle { position, age }, &mut comparison);
+                self.obstacles.learn(KnownObstacle { position, age });
             }
             self.meet(message.sender, message.position, here);
         }
     }
 
-    fn grow_older(&mut self) {
+    fn grow_older(&mut self, here: Millimetres) {
+        if self.tick.is_multiple_of(OBSTACLE_AGE_UNIT) {
+            self.obstacles.grow_older(here);
+            let now = self.tick;
+            self.neighbours.retain(|known| now.wrapping_sub(known.heard) < FORGET_NEIGHBOUR_TICKS);
+        }
         self.tick = self.tick.wrapping_add(1);
+        let tick = S::from_ratio(1, i32::from(TICKS_PER_SECOND));
         for target in &mut self.targets {
             target.age = target.age.saturating_add(1);
-            target.position = target.position + target.velocity * S::from_ratio(1, i32::from(TICKS_PER_SECOND));
+            target.position = target.position + target.velocity * tick;
         }
-        self.targets.retain(|target| target.age <= FORGET_TARGET_TICKS);
-        for neighbour in &mut self.neighbours {
-            neighbour.age = neighbour.age.saturating_add(1);
-        }
-        if self.neighbours.iter().any(|neighbour| neighbour.age > FORGET_NEIGHBOUR_TICKS) {
-            self.neighbours.retain(|neighbour| neighbour.age <= FORGET_NEIGHBOUR_TICKS);
-        }
-        if self.tick.is_multiple_of(OBSTACLE_AGE_UNIT) {
-            for obstacle in &mut self.obstacles {
-                obstacle.age = obstacle.age.saturating_add(1);
-            }
-            if self.obstacles.iter().any(|obstacle| obstacle.age > FORGET_OBSTACLE_UNITS) {
-                self.obstacles.retain(|obstacle| obstacle.age <= FORGET_OBSTACLE_UNITS);
-                self.obstacle_points.clear();
-                self.obstacle_points.extend(self.obstacles.iter().map(|obstacle| metres(obstacle.position)));
-            }
+        if self.targets.iter().any(|target| target.age > FORGET_TARGET_TICKS) {
+            self.targets.retain(|target| target.age <= FORGET_TARGET_TICKS);
         }
     }
 
@@ -230,7 +157,7 @@ impl<S: Scalar> Knowledge<S> {
         if age > FORGET_TARGET_TICKS || known.as_ref().is_some_and(|known| age >= known.age) {
             return;
         }
-        let [east, north] = report.velocity.map(|mm| S::from_ratio(i32::from(mm), 1000));
+        let [east, north] = report.velocity.map(|mm| S::from_millionths(i32::from(mm) * 1000));
         let told = KnownTarget {
             target: report.target,
             position: metres(report.position),
@@ -245,49 +172,20 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    fn learn_obstacle(&mut self, told: KnownObstacle, comparison: &mut Comparison) {
-        if told.age > FORGET_OBSTACLE_UNITS {
-            return;
-        }
-        if let Some(index) = comparison.position_of(told.position) {
-            if let Some(known) = self.obstacles.get_mut(index) {
-                known.age = known.age.min(told.age);
-            }
-            return;
-        }
-        let index = if self.obstacles.push(told).is_ok() {
-            let _ = self.obstacle_points.push(metres(told.position));
-            comparison.known += 1;
-            self.obstacles.len() - 1
-        } else if squared_distance(told.position, comparison.here) < comparison.largest {
-            let index = comparison.farthest;
-            if let (Some(known), Some(point)) = (self.obstacles.get_mut(index), self.obstacle_points.get_mut(index)) {
-                *known = told;
-                *point = metres(told.position);
-            }
-            index
-        } else {
-            return;
-        };
-        comparison.put(index, told.position);
-        comparison.find_farthest();
-    }
-
     fn meet(&mut self, robot: u8, place: Millimetres, here: Millimetres) {
-        let met = || Neighbour { robot, position: metres(place), place, age: 0 };
+        let square = squared_distance(place, here);
+        let met = Neighbour { robot, position: metres(place), square, heard: self.tick };
         if let Some(known) = self.neighbours.iter_mut().find(|known| known.robot == robot) {
-            *known = met();
-            return;
-        }
-        if !self.neighbours.is_full() {
-            let _ = self.neighbours.push(met());
-            return;
-        }
-        let (farthest, square) = largest_of(self.neighbours.iter().map(|known| squared_distance(known.place, here)));
-        if squared_distance(place, here) < square
-            && let Some(farthest) = self.neighbours.get_mut(farthest)
-        {
-            *farthest = met();
+            *known = met;
+        } else if !self.neighbours.is_full() {
+            let _ = self.neighbours.push(met);
+        } else {
+            let (farthest, largest) = largest_of(self.neighbours.iter().map(|known| known.square));
+            if square < largest
+                && let Some(farthest) = self.neighbours.get_mut(farthest)
+            {
+                *farthest = met;
+            }
         }
     }
 
@@ -303,10 +201,10 @@ impl<S: Scalar> Knowledge<S> {
         let first = turn.wrapping_mul(MAX_REPORTED_OBSTACLES as u32);
         let turns = (0..MAX_REPORTED_OBSTACLES as u32).map(|k| first.wrapping_add(k));
         let obstacles = if percept.obstacles.is_empty() {
-            let count = self.obstacles.len();
+            let count = self.obstacles.known().len();
             turns
                 .take(count)
-                .filter_map(|turn| nth_in_turn(&self.obstacles, turn))
+                .filter_map(|turn| nth_in_turn(self.obstacles.known(), turn))
                 .map(|known| ObstacleReport { position: known.position, age: known.age })
                 .collect()
         } else {

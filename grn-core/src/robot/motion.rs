@@ -44,12 +44,12 @@ pub struct Bearing<S> {
     pub gradient: Vector<S>,
 }
 
-/// Where the pattern is, seen from the robot.
+/// Where the pattern is, seen from the robot: -z = distance · direction.
 struct Way<S> {
-    /// -z: the way to the nearest point of the pattern, metres.
-    to_pattern: Vector<S>,
-    /// Across the pattern, of any length.
-    normal: Vector<S>,
+    /// How far, metres; negative against the direction.
+    distance: S,
+    /// Across the pattern, of length 1.
+    direction: Vector<S>,
 }
 
 /// The state of the motion law and its gains in the controller's number type.
@@ -61,8 +61,10 @@ pub struct Motion<S> {
     drive: S,
     repulsion: S,
     range: S,
+    per_range: S,
     cruise: S,
     ring_radius: S,
+    per_ring_radius: S,
     tick: S,
     protein: Vector<S>,
 }
@@ -70,15 +72,18 @@ pub struct Motion<S> {
 impl<S: Scalar> Motion<S> {
     /// A law at rest; `ring_radius` in world metres, `tick` the control period in seconds.
     pub fn new(gains: &Gains, ring_radius: S, tick: S) -> Self {
+        let range = S::from_f32(gains.repulsion_range) * ring_radius;
         Motion {
             attraction: S::from_f32(gains.attraction),
             coupling: S::from_f32(gains.coupling),
             decay: S::from_f32(gains.decay),
             drive: S::from_f32(gains.drive),
             repulsion: S::from_f32(gains.repulsion),
-            range: S::from_f32(gains.repulsion_range) * ring_radius,
+            range,
+            per_range: S::ONE / range,
             cruise: S::from_f32(gains.cruise),
             ring_radius,
+            per_ring_radius: S::ONE / ring_radius,
             tick,
             protein: Vector::ZERO,
         }
@@ -93,11 +98,12 @@ impl<S: Scalar> Motion<S> {
         neighbours: &[Neighbour<S>],
     ) -> Vector<S> {
         let to_target = target.position - here;
-        let Way { to_pattern, normal } = bearing
+        let Way { distance, direction } = bearing
             .and_then(|bearing| self.way_to_pattern(bearing, to_target))
-            .unwrap_or(Way { to_pattern: to_target.limited(self.trust()), normal: to_target });
-        let repulsion = self.repulsion_from(here, normal, neighbours);
-        let saturation = S::ONE + to_pattern.length() / self.ring_radius;
+            .unwrap_or_else(|| self.way_to_target(to_target));
+        let to_pattern = direction * distance;
+        let repulsion = self.repulsion_from(here, direction.turned_left(), neighbours);
+        let saturation = S::ONE + distance.abs() * self.per_ring_radius;
         let production = to_pattern * (self.drive / saturation) + repulsion * self.repulsion;
         self.protein = self.protein + (production - self.protein * self.decay) * self.tick;
         let velocity = target.velocity + to_pattern * self.attraction + self.protein * self.coupling;
@@ -111,18 +117,25 @@ impl<S: Scalar> Motion<S> {
 
     /// The way along the gradient of the pattern error; `None` where it does not tell the way.
     fn way_to_pattern(&self, bearing: &Bearing<S>, to_target: Vector<S>) -> Option<Way<S>> {
-        let step = newton_step(bearing.error, bearing.gradient)?;
+        let (distance, direction) = newton_step(bearing.error, bearing.gradient)?;
+        let trust = self.trust();
         let inside = bearing.error >= S::ZERO;
-        let believed = inside || (step.dot(to_target) > S::ZERO && step.length() < self.trust());
-        believed.then(|| Way { to_pattern: step.limited(self.trust()), normal: bearing.gradient })
+        // From outside the pattern is ahead, and so must the target be.
+        let believed = inside || (distance < trust && direction.dot(to_target) > S::ZERO);
+        believed.then(|| Way { distance: distance.clamp(-trust, trust), direction })
     }
 
-    /// D: along the pattern, away from each neighbour at distance d < R, (1 - d/R)² strong.
-    fn repulsion_from(&self, here: Point<S>, normal: Vector<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
-        let Some(tangent) = normal.turned_left().direction() else { return Vector::ZERO };
-        let along = neighbours.iter().fold(S::ZERO, |sum, neighbour| {
-            let offset = here - neighbour.position;
-            let closeness = (S::ONE - offset.length() / self.range).max(S::ZERO);
+    fn way_to_target(&self, to_target: Vector<S>) -> Way<S> {
+        let (distance, direction) = to_target.polar().unwrap_or((S::ZERO, Vector::ZERO));
+        Way { distance: distance.min(self.trust()), direction }
+    }
+
+    /// D: along the pattern's unit `tangent`, away from each neighbour at distance d < R, (1 - d/R)² strong.
+    fn repulsion_from(&self, here: Point<S>, tangent: Vector<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
+        let limit = self.range.square_sum(S::ZERO);
+        let offsets = neighbours.iter().map(|neighbour| here - neighbour.position);
+        let along = offsets.filter(|offset| offset.square() < limit).fold(S::ZERO, |sum, offset| {
+            let closeness = S::ONE - offset.length() * self.per_range;
             let strength = closeness * closeness;
             if offset.dot(tangent) < S::ZERO { sum - strength } else { sum + strength }
         });

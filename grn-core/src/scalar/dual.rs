@@ -70,4 +70,8 @@ impl<S: Scalar> Arithmetic for Dual<S> {
         let [d1, d2] = self.gradient;
         Dual { value: s, gradient: [slope * d1, slope * d2] }
     }
+    fn sigmoid(self, theta: S, k: S) -> Self {
+        let [d1, d2] = self.gradient;
+        Dual { value: (self.value - theta) * k, gradient: [d1 * k, d2 * k] }.logistic()
+    }
 }

@@ -5,6 +5,7 @@
 //! gradient with respect to the two inputs through the same generic code, and [`Stages`] the stages of an integration step.
 
 mod dual;
+mod exp;
 mod isqrt;
 mod q8_24;
 mod stages;
@@ -29,6 +30,12 @@ pub trait Arithmetic: Copy + Debug + Add<Output = Self> + Sub<Output = Self> + M
     /// The logistic function 1 / (1 + e^-z) of `self` = z, in [0, 1], monotone.
     #[must_use]
     fn logistic(self) -> Self;
+    /// 1 / (1 + e^(-k (x - θ))) of `self` = x.
+    #[must_use]
+    #[inline]
+    fn sigmoid(self, theta: Self::Real, k: Self::Real) -> Self {
+        ((self - Self::constant(theta)) * Self::constant(k)).logistic()
+    }
 }
 
 /// A real number on the robot or the host: `f32`, [`Q8_24`] or `f64`.
@@ -39,12 +46,16 @@ pub trait Scalar:
 {
     /// The name users type: `f32`, `q8.24`, `f64`.
     const NAME: &'static str;
+    /// Squares to compare lengths by, without the range and the rounding of a number.
+    type Square: Copy + PartialOrd;
     /// Nearest representable value; Q8.24 saturates at ±128 and takes NaN as 0.
     fn from_f32(value: f32) -> Self;
     /// Nearest representable value; Q8.24 saturates at ±128 and takes NaN as 0.
     fn from_f64(value: f64) -> Self;
     /// `numerator / denominator`, rounded once per operation; the denominator must not be 0.
     fn from_ratio(numerator: i32, denominator: i32) -> Self;
+    /// `millionths` · 10^-6, off by at most two units in the last place: micrometres as metres.
+    fn from_millionths(millionths: i32) -> Self;
     /// Nearest `f32`.
     fn to_f32(self) -> f32;
     /// Exact for every implementation.
@@ -62,6 +73,8 @@ pub trait Scalar:
     /// √(self² + other²) without intermediate overflow in Q8.24.
     #[must_use]
     fn hypot(self, other: Self) -> Self;
+    /// self² + other².
+    fn square_sum(self, other: Self) -> Self::Square;
     /// `self` · 2^-`exponent`, exponent in 0..=30; exact in floating point, rounded to nearest in Q8.24.
     #[must_use]
     fn halved(self, exponent: u8) -> Self;
@@ -94,14 +107,16 @@ impl Arithmetic for f32 {
     fn constant(value: f32) -> f32 {
         value
     }
+    #[inline]
     fn logistic(self) -> f32 {
         1.0 / (1.0 + exp_f32(-self))
     }
 }
 
 #[cfg(not(feature = "micromath"))]
+#[inline]
 fn exp_f32(x: f32) -> f32 {
-    libm::expf(x)
+    exp::exp(x)
 }
 
 /// micromath's approximation of e^x, held to the range where its exponent arithmetic is sound.
@@ -112,11 +127,15 @@ fn exp_f32(x: f32) -> f32 {
 
 impl Scalar for f32 {
     const NAME: &'static str = "f32";
+    type Square = f32;
     fn from_f32(value: f32) -> f32 {
         value
     }
     fn from_f64(value: f64) -> f32 {
         value as f32
+    }
+    fn from_millionths(millionths: i32) -> f32 {
+        millionths as f32 * 1e-6
     }
     fn from_ratio(numerator: i32, denominator: i32) -> f32 {
         numerator as f32 / denominator as f32
@@ -128,16 +147,22 @@ impl Scalar for f32 {
         f64::from(self)
     }
     fn times_to_i32(self, factor: i32) -> i32 {
-        libm::roundf(self * factor as f32) as i32
+        // The largest number below 1/2: with 1/2 itself, what is just below it would round up.
+        let product = self * factor as f32;
+        (product + 0.499_999_97_f32.copysign(product)) as i32
     }
     fn exp_neg(self) -> f32 {
-        exp_f32(-self.max(0.0))
+        // Beyond, the result is below the smallest normal number.
+        if self > -exp::LOWEST { 0.0 } else { exp_f32(-self.max(0.0)) }
     }
     fn sqrt(self) -> f32 {
         libm::sqrtf(Scalar::max(self, 0.0))
     }
     fn hypot(self, other: f32) -> f32 {
-        libm::sqrtf(self * self + other * other)
+        libm::sqrtf(self.square_sum(other))
+    }
+    fn square_sum(self, other: f32) -> f32 {
+        self * self + other * other
     }
     fn halved(self, exponent: u8) -> f32 {
         self * f32::from_bits((127 - u32::from(exponent.min(30))) << 23)
@@ -158,11 +183,15 @@ impl Arithmetic for f64 {
 
 impl Scalar for f64 {
     const NAME: &'static str = "f64";
+    type Square = f64;
     fn from_f32(value: f32) -> f64 {
         f64::from(value)
     }
     fn from_f64(value: f64) -> f64 {
         value
+    }
+    fn from_millionths(millionths: i32) -> f64 {
+        f64::from(millionths) * 1e-6
     }
     fn from_ratio(numerator: i32, denominator: i32) -> f64 {
         f64::from(numerator) / f64::from(denominator)
@@ -183,7 +212,10 @@ impl Scalar for f64 {
         libm::sqrt(Scalar::max(self, 0.0))
     }
     fn hypot(self, other: f64) -> f64 {
-        libm::sqrt(self * self + other * other)
+        libm::sqrt(self.square_sum(other))
+    }
+    fn square_sum(self, other: f64) -> f64 {
+        self * self + other * other
     }
     fn halved(self, exponent: u8) -> f64 {
         self * f64::from_bits((1023 - u64::from(exponent.min(30))) << 52)

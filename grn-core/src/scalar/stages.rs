@@ -53,13 +53,12 @@ impl<S: Scalar> Arithmetic for Stages<S> {
     fn constant(value: S) -> Self {
         Stages([value; 4])
     }
-    /// Equal values, as they are where only a step's constant inputs count, are looked at once.
     #[inline]
     fn logistic(self) -> Self {
-        let [first, others @ ..] = self.0;
-        if others == [first; 3] {
-            return Stages([first.logistic(); 4]);
-        }
         Stages(self.0.map(S::logistic))
+    }
+    #[inline]
+    fn sigmoid(self, theta: S, k: S) -> Self {
+        Stages(self.0.map(|level| level.sigmoid(theta, k)))
     }
 }

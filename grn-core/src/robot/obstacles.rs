@@ -1,0 +1,182 @@
+//! The obstacle points a robot keeps in mind: the nearest ones it saw or heard of, with their age, one in every square
+//! of 32 mm: a point seen again and again, a few millimetres off, must not crowd out the others.
+
+use super::knowledge::{largest_of, metres, squared_distance};
+use super::percept::Millimetres;
+use crate::geometry::Point;
+use crate::scalar::Scalar;
+use heapless::Vec;
+
+/// The most obstacle points kept in mind: the nearest ones.
+pub const MAX_OBSTACLES: usize = 16;
+/// An obstacle point is forgotten after so many units of age.
+const FORGET_UNITS: u8 = 40;
+/// How far a robot may get from where distances were measured, with its noise, before they mislead, millimetres.
+const SLACK: u32 = 50;
+/// The side of a square that keeps one point: 2^5 mm.
+const CELL_LOG2: u32 = 5;
+/// Places to look first, several times as many as points.
+const SLOTS: usize = 128;
+
+/// A point and when it was seen.
+#[derive(Clone, Copy, Debug)]
+pub struct KnownObstacle {
+    pub position: Millimetres,
+    /// Units of 8 ticks since it was seen.
+    pub age: u8,
+}
+
+/// The known points. Dozens arrive in a tick, nearly all of them known already.
+///
+/// Who is nearer is decided in whole millimetres, which messages are in anyway, and from where the robot was when ages
+/// were last counted: in a quarter of a second it moves 36 mm at most, less than [`SLACK`].
+#[derive(Clone, Debug)]
+pub struct ObstacleMap<S> {
+    known: Vec<KnownObstacle, MAX_OBSTACLES>,
+    /// The points, in metres, that can be the nearest until distances are measured again.
+    near: Vec<Point<S>, MAX_OBSTACLES>,
+    /// By a hash of the cell: which known point to compare with first.
+    slots: [u8; SLOTS],
+    here: Millimetres,
+    farthest: usize,
+    largest: u32,
+}
+
+impl<S: Scalar> ObstacleMap<S> {
+    pub fn new() -> Self {
+        ObstacleMap {
+            known: Vec::new(),
+            near: Vec::new(),
+            slots: [0; SLOTS],
+            here: Millimetres::default(),
+            farthest: 0,
+            largest: 0,
+        }
+    }
+
+    pub fn known(&self) -> &[KnownObstacle] {
+        &self.known
+    }
+
+    /// Those, in metres, of which one is the nearest.
+    pub fn near(&self) -> &[Point<S>] {
+        &self.near
+    }
+
+    /// Counts one unit of age, and measures distances from `here` from now on.
+    pub fn grow_older(&mut self, here: Millimetres) {
+        for obstacle in &mut self.known {
+            obstacle.age = obstacle.age.saturating_add(1);
+        }
+        if self.known.iter().any(|obstacle| obstacle.age > FORGET_UNITS) {
+            self.known.retain(|obstacle| obstacle.age <= FORGET_UNITS);
+        }
+        self.here = here;
+        self.measure();
+    }
+
+    /// Takes a point in, if it is not forgotten and nearer than one of the known.
+    pub fn learn(&mut self, told: KnownObstacle) {
+        if told.age > FORGET_UNITS {
+            return;
+        }
+        let cell = cell(told.position);
+        // Multiplicative hashing: the upper bits of the product depend on all of both coordinates.
+        let slot = (cell.wrapping_mul(0x9e37_79b1) >> (u32::BITS - SLOTS.ilog2())) as usize;
+        let first = self.slots.get(slot).and_then(|&index| self.known.get_mut(usize::from(index)));
+        if let Some(known) = first
+            && self::cell(known.position) == cell
+        {
+            known.age = known.age.min(told.age);
+            return;
+        }
+        if self.known.is_full() && squared_distance(told.position, self.here) > self.largest {
+            return;
+        }
+        if let Some(index) = self.place(told)
+            && let Some(slot) = self.slots.get_mut(slot)
+        {
+            *slot = index as u8;
+        }
+    }
+
+    /// Where the point is kept now, if it is.
+    fn place(&mut self, told: KnownObstacle) -> Option<usize> {
+        let cell = cell(told.position);
+        if let Some(index) = self.known.iter().position(|known| self::cell(known.position) == cell) {
+            let known = self.known.get_mut(index)?;
+            known.age = known.age.min(told.age);
+            return Some(index);
+        }
+        let index = if self.known.push(told).is_ok() {
+            self.known.len() - 1
+        } else if squared_distance(told.position, self.here) < self.largest {
+            *self.known.get_mut(self.farthest)? = told;
+            self.farthest
+        } else {
+            return None;
+        };
+        self.measure();
+        Some(index)
+    }
+
+    /// Finds the farthest point and those that can be the nearest: every other one is more than 2 [`SLACK`] farther away
+    /// from `here`, hence farther away from any place within [`SLACK`] of it.
+    fn measure(&mut self) {
+        let here = self.here;
+        let squares = || self.known.iter().map(|known| squared_distance(known.position, here));
+        (self.farthest, self.largest) = largest_of(squares());
+        let nearest = squares().min().unwrap_or(0);
+        let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
+        let near = self.known.iter().zip(squares()).filter(|&(_, square)| square <= limit);
+        self.near = near.map(|(known, _)| metres(known.position)).collect();
+    }
+}
+
+fn cell(Millimetres { x, y }: Millimetres) -> u32 {
+    let [x, y] = [x, y].map(|mm| u32::from((mm >> CELL_LOG2) as u16));
+    (x << 16) | y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(x: i16, age: u8) -> KnownObstacle {
+        KnownObstacle { position: Millimetres { x, y: 5 }, age }
+    }
+
+    #[test]
+    fn the_nearest_are_kept_once_each() {
+        let mut map = ObstacleMap::<f32>::new();
+        map.grow_older(Millimetres { x: 0, y: 5 });
+        for x in (0..100).rev().chain(0..100) {
+            map.learn(told(x * 32 + 3, 3));
+            map.learn(told(x * 32 + 9, 3));
+        }
+        let mut kept: std::vec::Vec<i16> = map.known().iter().map(|known| known.position.x).collect();
+        kept.sort_unstable();
+        assert_eq!(kept, (0..16).map(|x| x * 32 + 3).collect::<std::vec::Vec<_>>());
+        // Of 3, 35, … 483 mm, those of up to 103.
+        let near: std::vec::Vec<f32> = map.near().iter().map(|point| libm::roundf(point.x * 1000.0)).collect();
+        assert_eq!((near.len(), near.iter().copied().fold(0.0, f32::max)), (4, 99.0));
+        assert!(near.contains(&3.0) && map.near().iter().all(|point| (point.y - 0.005).abs() < 1e-6));
+    }
+
+    #[test]
+    fn the_fresher_age_stands_until_it_is_forgotten() {
+        let mut map = ObstacleMap::<f32>::new();
+        let here = Millimetres::default();
+        map.learn(told(1, 7));
+        map.learn(told(1, 2));
+        map.learn(told(1, 9));
+        map.learn(told(99, FORGET_UNITS + 1));
+        assert_eq!(map.known().iter().map(|known| known.age).collect::<std::vec::Vec<_>>(), [2]);
+        for _ in 2..FORGET_UNITS {
+            map.grow_older(here);
+        }
+        assert_eq!((map.known().len(), map.near().len()), (1, 1));
+        map.grow_older(here);
+        assert!(map.near().is_empty() && map.known().is_empty());
+    }
+}

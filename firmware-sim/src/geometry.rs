@@ -1,11 +1,13 @@
 //! Polygons, walls, rays and hulls in the plane, in `f64`; lengths in metres unless stated otherwise.
 
+mod nearest;
 mod polygon;
 
 pub use polygon::{Polygon, PolygonError};
 
 use grn_core::field::Obstacles;
 use grn_core::geometry::{Point, Vector};
+use nearest::NearestEdges;
 
 /// |v|², without the square root.
 pub fn length_squared(v: Vector<f64>) -> f64 {
@@ -181,12 +183,13 @@ pub fn convex_hull(points: &[Point<f64>]) -> Vec<Point<f64>> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Walls {
     polygons: Vec<Polygon>,
+    nearest: Option<NearestEdges>,
 }
 
 impl Walls {
     /// These polygons.
     pub fn new(polygons: Vec<Polygon>) -> Self {
-        Walls { polygons }
+        Walls { nearest: NearestEdges::of(&polygons), polygons }
     }
 
     /// The polygons, in the scenario's order.
@@ -217,6 +220,9 @@ impl Walls {
 
     /// Distance to the nearest wall's outline: negative inside a wall (the deepest counts), infinite without walls.
     pub fn signed_distance(&self, point: Point<f64>) -> f64 {
+        if let Some((_, squared)) = self.nearest.as_ref().and_then(|nearest| nearest.nearest_outside(point)) {
+            return squared.sqrt();
+        }
         let inside = self.polygons.iter().filter(|polygon| polygon.contains(point));
         let depth = inside.map(|polygon| polygon.nearest_boundary(point).1).reduce(f64::max);
         match depth {
@@ -227,6 +233,9 @@ impl Walls {
 
     /// The point of any outline nearest to `point` and the squared distance to it, or `None` without walls.
     pub fn nearest_boundary(&self, point: Point<f64>) -> Option<(Point<f64>, f64)> {
+        if let Some(best) = self.nearest.as_ref().and_then(|nearest| nearest.nearest(point)) {
+            return Some(best);
+        }
         let mut best: Option<(Point<f64>, f64)> = None;
         for polygon in &self.polygons {
             if best.is_some_and(|(_, squared)| polygon.bounds().distance_squared(point) >= squared) {
@@ -255,6 +264,9 @@ impl Walls {
 
 impl Obstacles<f64> for Walls {
     fn offset_from_nearest(&self, point: Point<f64>) -> Option<Vector<f64>> {
+        if let Some((boundary, _)) = self.nearest.as_ref().and_then(|nearest| nearest.nearest_outside(point)) {
+            return Some(point - boundary);
+        }
         let (boundary, _) = self.nearest_boundary(point)?;
         Some(if self.containing(point).is_some() { Vector::ZERO } else { point - boundary })
     }

@@ -128,3 +128,27 @@ fn hulls_are_convex_and_hold_every_point() {
     assert!(point_in_polygon(&convex_hull(&square), Vector::new(1.0, 0.5)));
     assert_eq!(convex_hull(&[Vector::new(0.0, 0.0), Vector::new(1.0, 1.0), Vector::new(2.0, 2.0)]).len(), 2);
 }
+
+#[test]
+fn the_grid_of_nearest_edges_tells_what_all_edges_tell() {
+    let mut stream = crate::random::Stream::new(1, crate::random::Component::Obstacles, 0);
+    let mut number = |low: f64, high: f64| low + (high - low) * stream.unit();
+    let disc = |x: f64, y: f64, r: f64| {
+        let corners = (0..7).map(|i| libm::sincos(f64::from(i) * 0.9)).map(|(sin, cos)| (x + r * cos, y + r * sin));
+        polygon(&corners.collect::<Vec<_>>()).unwrap()
+    };
+    // Some overlap, so that the deepest counts.
+    let polygons: Vec<Polygon> = (0..12).map(|_| disc(number(0.0, 9.0), number(-4.0, 3.0), number(0.2, 1.5))).collect();
+    let walls = Walls::new(polygons.clone());
+    for _ in 0..20_000 {
+        let point = Vector::new(number(-6.0, 15.0), number(-8.0, 7.0));
+        let nearest = polygons.iter().map(|p| p.nearest_boundary(point)).reduce(|a, b| if b.1 < a.1 { b } else { a });
+        assert_eq!(walls.nearest_boundary(point), nearest);
+        let depths = polygons.iter().map(|p| p.signed_distance(point));
+        let deepest = depths.clone().filter(|depth| *depth < 0.0).fold(0.0, f64::min);
+        let expected = if deepest < 0.0 { deepest } else { depths.fold(f64::INFINITY, f64::min) };
+        assert_eq!(walls.signed_distance(point), expected);
+        let away = if deepest < 0.0 { Vector::ZERO } else { point - nearest.unwrap().0 };
+        assert_eq!(walls.offset_from_nearest(point), Some(away));
+    }
+}

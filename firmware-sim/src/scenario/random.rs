@@ -136,18 +136,13 @@ mod tests {
                     assert!(clearance >= SOME.clearance, "world {seed}: {clearance} m at {target:?}");
                 }
             }
-            let covered: f64 = world.walls().polygons().iter().map(|p| area(&p.vertices().collect::<Vec<_>>())).sum();
+            let covered: f64 = world.walls().polygons().iter().map(Polygon::area).sum();
             let share = covered / (world.region()[0] * world.region()[1]);
             assert!((0.0495..0.0545).contains(&share), "world {seed} is covered to {share}");
             assert_eq!(Scenario::parse(&world.to_toml()).unwrap(), world);
         }
         let other = open().with_random_obstacles(&RandomObstacles { seed: 2, ..SOME }).unwrap();
         assert_ne!(open().with_random_obstacles(&SOME).unwrap().walls(), other.walls());
-    }
-
-    fn area(vertices: &[Point<f64>]) -> f64 {
-        let next = |place: usize| vertices[(place + 1) % vertices.len()];
-        (0..vertices.len()).map(|place| vertices[place].cross(next(place))).sum::<f64>().abs() / 2.0
     }
 
     #[test]

@@ -12,5 +12,6 @@ pub mod report;
 pub mod run;
 pub mod search;
 pub mod simulation;
+pub mod statistics;
 pub mod tree;
 pub mod variation;

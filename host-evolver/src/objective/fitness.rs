@@ -1,5 +1,6 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
+use super::lanes::{Lanes, WIDTH};
 use super::model::Model;
 use super::profile::{Profile, Sigmoid};
 use super::ring::candidates;
@@ -130,12 +131,11 @@ fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Eval
     let lost = lost / snapshot.targets.len() as f64;
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
     for ring in &contours.rings {
-        for point in candidates(ring, CANDIDATES_PER_RING) {
-            to_targets += sum_over(&snapshot.targets, point, &world.terms.target);
-            to_obstacles += sum_over(&snapshot.obstacle_points, point, &world.terms.obstacle);
-            close += usize::from(world.is_closer_than(point, SMALLEST_CLEARANCE));
-            count += 1;
-        }
+        let points = candidates(ring, CANDIDATES_PER_RING);
+        to_targets += sum_over(&snapshot.targets, &points, &world.terms.target);
+        to_obstacles += sum_over(&snapshot.obstacle_points, &points, &world.terms.obstacle);
+        close += points.iter().filter(|&&point| world.is_closer_than(point, SMALLEST_CLEARANCE)).count();
+        count += points.len();
     }
     if count == 0 {
         return Evaluation { f2: WORST_F2, violation: lost };
@@ -146,12 +146,16 @@ fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Eval
     Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
 }
 
-fn sum_over(sources: &[Point<f64>], point: Point<f64>, term: &Profile) -> f64 {
-    sources
-        .iter()
-        .map(|&source| {
-            let offset = point - source;
-            term.at(offset.dot(offset))
-        })
-        .sum()
+/// The sum of a term over all pairs of sources and points.
+fn sum_over(sources: &[Point<f64>], points: &[Point<f64>], term: &Profile) -> f64 {
+    let squared = |source: Point<f64>, point: Point<f64>| (point - source).dot(point - source);
+    let (eights, rest) = points.as_chunks::<WIDTH>();
+    let mut sums = Lanes::splat(0.0);
+    for &source in sources {
+        for eight in eights {
+            sums = sums + term.at_all(Lanes(eight.map(|point| squared(source, point))));
+        }
+    }
+    let sum: f64 = sums.0.iter().sum();
+    sum + sources.iter().flat_map(|&source| rest.iter().map(move |&point| term.at(squared(source, point)))).sum::<f64>()
 }

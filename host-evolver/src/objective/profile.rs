@@ -1,5 +1,7 @@
 //! Sums of sigmoids of a distance, tabulated over the squared distance: no square root, no exponential in the inner loop.
 
+use super::lanes::Lanes;
+
 /// Largest product of table spacing (m²) and steepness (1/m); keeps the interpolation error below 1e-7.
 const SPACING_TIMES_STEEPNESS: f64 = 0.1;
 /// Largest table spacing, m²: gentle sigmoids too are bent by the square root.
@@ -58,12 +60,26 @@ impl Profile {
         let place = (squared_distance * self.per_spacing).min((self.knots.len() - 2) as f64);
         let index = place as u32;
         let t = place - f64::from(index);
-        let u = 1.0 - t;
-        let Some(&[below, above]) = self.knots.get(index as usize..).and_then(|rest| rest.first_chunk()) else {
+        let Some(&knots) = self.knots.get(index as usize..).and_then(|rest| rest.first_chunk()) else {
             return self.exact(squared_distance);
         };
-        // Everett's formula: the cubic through four knots.
-        u * (below[0] + (u * u - 1.0) * below[1]) + t * (above[0] + (t * t - 1.0) * above[1])
+        everett(t, knots)
+    }
+
+    /// The same at eight squared distances.
+    #[inline]
+    pub(super) fn at_all(&self, squared_distances: Lanes) -> Lanes {
+        if squared_distances.0.iter().any(|&squared| squared < NEAR * NEAR) {
+            return Lanes(squared_distances.0.map(|squared| self.at(squared)));
+        }
+        let last = (self.knots.len() - 2) as f64;
+        let places = squared_distances.0.map(|squared| (squared * self.per_spacing).min(last));
+        let indices = places.map(|place| place as u32);
+        let knots = indices.map(|index| [self.knots[index as usize], self.knots[index as usize + 1]]);
+        Lanes(std::array::from_fn(|lane| {
+            let t = places[lane] - f64::from(indices[lane]);
+            everett(t, knots[lane])
+        }))
     }
 
     #[cold]
@@ -73,9 +89,17 @@ impl Profile {
     }
 }
 
+/// The cubic through four knots, at the share `t` of the way from the second to the third.
+#[inline]
+fn everett(t: f64, [below, above]: [[f64; 2]; 2]) -> f64 {
+    let u = 1.0 - t;
+    u * (below[0] + (u * u - 1.0) * below[1]) + t * (above[0] + (t * t - 1.0) * above[1])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::objective::lanes::WIDTH;
 
     #[test]
     fn the_table_equals_the_function() {
@@ -86,6 +110,7 @@ mod tests {
             let profile = Profile::new(vec![Sigmoid { threshold: 2.0, slope: steepness }, falling]);
             for i in 0..60_000 {
                 let d = f64::from(i) * 0.0005;
+                assert_eq!(profile.at_all(Lanes::splat(d * d)).0, [profile.at(d * d); WIDTH]);
                 let error = (profile.at(d * d) - exact(d)).abs();
                 assert!(error < 1e-7, "steepness {steepness}, d = {d}: off by {error}");
             }

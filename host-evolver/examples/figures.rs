@@ -1,6 +1,7 @@
 //! Draws every kind of figure from made-up data: `cargo run --example figures -- DIRECTORY`.
 
 use host_evolver::report::*;
+use host_evolver::statistics::{quartiles, wilson};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +25,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     square.window = Window { min: [0.0, 0.0], max: [20.0, 20.0] };
     save(&directory, "trace-square", trace(&square)?)?;
     save(&directory, "trace-two", trace(&run(&[2.5, 4.5], 5.0))?)?;
+    save(&directory, "boxes", boxes(&campaign(6, &METHODS))?)?;
+    save(&directory, "boxes-one", boxes(&campaign(1, &METHODS[..4]))?)?;
+    save(&directory, "boxes-many", boxes(&campaign(1, &[METHODS, METHODS].concat()))?)?;
+    let long = ["Differential evolution", "Reimplementation", "CMA-ES"];
+    save(&directory, "boxes-upright", boxes(&campaign(1, &long.repeat(4)))?)?;
+    save(&directory, "convergence", convergence(&histories(3, &METHODS))?)?;
+    save(&directory, "convergence-one", convergence(&histories(1, &METHODS[..3]))?)?;
+    save(&directory, "rates", rates(&successes(3, &METHODS))?)?;
+    save(&directory, "rates-one", rates(&successes(1, &METHODS[..3]))?)?;
     Ok(())
 }
 
@@ -215,4 +225,57 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         radial_band: 0.16,
         times,
     }
+}
+
+const METHODS: [&str; 5] =
+    ["MOGP, all motifs", "MOGP, no XNOR", "EH-GRN, structure 1", "EH-GRN, structure 2", "Random search"];
+const SCENARIOS: [&str; 6] =
+    ["Narrow channel", "Compound channel", "Two targets", "Obstacle field", "Moving target", "Open field"];
+
+fn campaign(panels: usize, methods: &[&str]) -> BoxFigure {
+    let group = |i: usize, j: usize| {
+        let run = |k: usize| {
+            let at = (1000 * i + 40 * j + k) as u64;
+            let tail = if noise(at + 7000) > 0.93 { 3.0 } else { 1.0 };
+            let value = 0.0135 + 0.002 * (1.0 + j as f64) * tail * noise(at) * libm::pow(4.0, (i % 3) as f64);
+            (noise(at + 9000) > 0.08 * (i * j % 5) as f64).then_some(value)
+        };
+        BoxGroup { label: methods[j].into(), values: (0..30).map(run).collect() }
+    };
+    let panel = |i: usize| BoxPanel {
+        title: SCENARIOS[i].into(),
+        groups: (0..methods.len()).map(|j| group(i + usize::from(panels == 1), j)).collect(),
+    };
+    BoxFigure { panels: (0..panels).map(panel).collect(), y_label: "f2 of the best model".into() }
+}
+
+fn histories(panels: usize, methods: &[&str]) -> ConvergenceFigure {
+    let series = |i: usize, j: usize| {
+        let point = |k: u64| {
+            let runs = |run: u64| {
+                let pace = 8.0 + 6.0 * j as f64 + 12.0 * noise(run + 100 * j as u64);
+                let start = 0.6 + 0.4 * noise(run + 50);
+                0.0135 + 0.004 * j as f64 * noise(run) + start * libm::exp(-(k as f64) / pace) / (1.0 + i as f64 * 20.0)
+            };
+            Some((2500 * k, quartiles(&(0..30).map(runs).collect::<Vec<f64>>())?))
+        };
+        ConvergenceSeries { label: methods[j].into(), points: (1..=80).filter_map(point).collect() }
+    };
+    let panel = |i: usize| ConvergencePanel {
+        title: SCENARIOS[i].into(),
+        series: (0..methods.len()).map(|j| series(i, j)).collect(),
+    };
+    ConvergenceFigure { panels: (0..panels).map(panel).collect(), y_label: "f2 of the best model".into() }
+}
+
+fn successes(groups: usize, methods: &[&str]) -> RatesFigure {
+    let row = |i: usize, j: usize| {
+        let count = (30.0 * noise((10 * i + j) as u64).max(0.2 * (4 - j) as f64)) as usize;
+        RateRow { label: methods[j].into(), rate: count as f64 / 30.0, interval: wilson(count, 30) }
+    };
+    let group = |i: usize| RateGroup {
+        title: if groups > 1 { SCENARIOS[i].into() } else { String::new() },
+        rows: (0..methods.len()).map(|j| row(i, j)).collect(),
+    };
+    RatesFigure { groups: (0..groups).map(group).collect(), x_label: "Closed-loop runs without a gap (%)".into() }
 }

@@ -14,6 +14,8 @@
 //! library, so they use the small writer in [`svg`].
 
 mod axes;
+mod boxes;
+mod convergence;
 mod error;
 mod front;
 mod grn;
@@ -22,9 +24,11 @@ mod grn_layout;
 mod legend;
 mod map;
 mod paint;
+mod panels;
 mod pareto;
 mod pattern;
 mod place;
+mod rates;
 pub mod style;
 mod svg;
 mod text;
@@ -33,11 +37,14 @@ mod trace_map;
 mod trace_strips;
 mod tree;
 
+pub use boxes::{BoxFigure, BoxGroup, BoxPanel, boxes};
+pub use convergence::{ConvergenceFigure, ConvergencePanel, ConvergenceSeries, convergence};
 pub use error::FigureError;
 pub use grn::{Gene, Input, Source, grn};
 pub use map::Window;
 pub use pareto::{KneeKind, ParetoPoint, Reference, pareto};
 pub use pattern::{Panel, PatternFigure, Target, pattern};
+pub use rates::{RateGroup, RateRow, RatesFigure, rates};
 pub use trace::{Instant, Pose, TraceFigure, trace};
 pub use tree::{SyntaxTree, tree};
 

@@ -84,6 +84,24 @@ pub fn expression(network: &Network<f32>) -> String {
     write(&syntax_tree(network))
 }
 
+/// An [`expression`] without θ, in function notation: `XNOR(NAND(x1, x1), x2)`.
+pub fn without_theta(expression: &str) -> String {
+    let mut text = String::new();
+    let mut in_theta = false;
+    for character in expression.chars() {
+        match character {
+            '[' => in_theta = true,
+            ']' => in_theta = false,
+            _ if in_theta || character == '(' => {}
+            // The first operand follows its function, the others an operand.
+            ' ' if text.ends_with(|last: char| last.is_ascii_uppercase()) => text.push('('),
+            ' ' => text.push_str(", "),
+            other => text.push(other),
+        }
+    }
+    text
+}
+
 /// The syntax tree as indented text.
 pub fn tree_text(network: &Network<f32>) -> String {
     fn draw(tree: &report::SyntaxTree, first: &str, rest: &str, text: &mut String) {

@@ -57,10 +57,17 @@ pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> 
     };
     let members = front.iter().map(|member| point(&member.individual, knee_kind(member)));
     let others = population.iter().filter(|other| !is_member(other) && is_near(other)).map(|other| point(other, None));
-    let points: Vec<_> = members.chain(others).collect();
+    pareto_of(&members.chain(others).collect::<Vec<_>>(), ring)
+}
+
+/// A Pareto front from its points, beside a perfect circle's f2.
+///
+/// # Errors
+/// No feasible point, or numbers that cannot be drawn.
+pub fn pareto_of(points: &[report::ParetoPoint], ring: &Ring) -> Result<String, FigureError> {
     let best = perfect_circle(ring);
     let reference = report::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
-    report::pareto(&points, "", Some(&reference))
+    report::pareto(points, "", Some(&reference))
 }
 
 fn knee_kind(member: &FrontMember) -> Option<KneeKind> {

@@ -1,8 +1,142 @@
-//! stub
-use super::plan::Plan;
-use super::tables::Tables;
-use crate::files::FileError;
+//! The pictures of a campaign.
+
+use super::plan::{Plan, PlannedScenario, slug};
+use super::tables::{Measure, RunRow, Tables};
+use super::unit::{Moment, Unit};
+use crate::evolve::REFERENCE;
+use crate::figures::{pareto_of, pattern};
+use crate::files::{self, FileError, read_blob};
+use crate::objective::{Model, World};
+use crate::report::{self, FigureError};
+use crate::statistics::quartiles;
+use crate::{describe, report::KneeKind};
 use std::path::Path;
-pub(super) fn write(_: &Plan, _: &Tables, _: &Path) -> Result<(), FileError> {
+
+/// Draws everything into the campaign's folder. Variations of a scenario are in the tables only.
+pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(), FileError> {
+    let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
+    let draw = |name: &str, figure: Result<String, FigureError>| {
+        let path = campaign.join(name);
+        let svg = figure.map_err(|error| FileError::new(&path, format!("cannot be drawn: {error}")))?;
+        files::write(&path, svg)
+    };
+    for (measure, name) in [
+        (Measure::KneeF2, "f2-of-knees.svg"),
+        (Measure::BestF2, "f2.svg"),
+        (Measure::BestNodes, "nodes.svg"),
+        (Measure::KneeNodes, "nodes-of-knees.svg"),
+    ] {
+        draw(name, boxes(plan, &scenarios, tables, measure))?;
+    }
+    draw("convergence.svg", report::convergence(&convergence(plan, campaign)?))?;
+    if !tables.transfers.is_empty() {
+        draw("transfers.svg", rates(tables))?;
+    }
+    for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
+        let world = World::new(planned.scenario.clone());
+        for (method, planned_method) in plan.methods.iter().enumerate() {
+            let Some(unit) = typical(plan, tables, place, method) else { continue };
+            let name = |what: &str| {
+                format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
+            };
+            let front = unit.front(plan, campaign)?;
+            let points = front.iter().map(|member| report::ParetoPoint {
+                nodes: member.nodes as u32,
+                f2: member.f2,
+                feasible: member.violation == 0.0,
+                knee: match (member.knee.contains("angle"), member.knee.contains("utility")) {
+                    (true, true) => Some(KneeKind::Both),
+                    (true, false) => Some(KneeKind::Angle),
+                    (false, true) => Some(KneeKind::Utility),
+                    (false, false) => None,
+                },
+                label: describe::without_theta(&member.expression),
+            });
+            if front.iter().any(|member| member.violation == 0.0) {
+                draw(&name("pareto"), pareto_of(&points.collect::<Vec<_>>(), &planned.scenario.ring()))?;
+            }
+            let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
+            draw(&name("tree"), report::tree(&describe::syntax_tree(&network)))?;
+            draw(&name("grn"), report::grn(&describe::graph(&network)))?;
+            if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
+                draw(&name("pattern"), pattern(&world, &model))?;
+            }
+        }
+    }
     Ok(())
+}
+
+/// The run whose knee has the median f2 of a method in a scenario.
+fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Option<Unit> {
+    let (scenario_name, method_name) = (plan.scenarios[scenario].scenario.name(), &plan.methods[method].name);
+    let mut rows: Vec<&RunRow> =
+        tables.runs.iter().filter(|run| run.scenario == scenario_name && run.method == *method_name).collect();
+    rows.sort_by(|a, b| Measure::KneeF2.of(a).total_cmp(&Measure::KneeF2.of(b)).then(a.seed.cmp(&b.seed)));
+    let seed = rows.get(rows.len().saturating_sub(1) / 2)?.seed;
+    Some(Unit { scenario, method, seed })
+}
+
+fn boxes(
+    plan: &Plan,
+    scenarios: &[&PlannedScenario],
+    tables: &Tables,
+    measure: Measure,
+) -> Result<String, FigureError> {
+    let is_knee = matches!(measure, Measure::KneeF2 | Measure::KneeNodes);
+    let value = |run: &RunRow| {
+        let violation = if is_knee { run.knee_violation } else { run.best_violation };
+        (violation == 0.0).then(|| measure.of(run))
+    };
+    let panel = |planned: &&PlannedScenario| report::BoxPanel {
+        title: planned.scenario.name().into(),
+        groups: plan
+            .methods
+            .iter()
+            .map(|method| {
+                let of_it = |run: &&RunRow| run.scenario == planned.scenario.name() && run.method == method.name;
+                let values = tables.runs.iter().filter(of_it).map(value).collect();
+                report::BoxGroup { label: method.name.clone(), values }
+            })
+            .collect(),
+    };
+    let panels = scenarios.iter().map(panel).collect();
+    report::boxes(&report::BoxFigure { panels, y_label: measure.words().into() })
+}
+
+fn convergence(plan: &Plan, campaign: &Path) -> Result<report::ConvergenceFigure, FileError> {
+    let mut panels = Vec::new();
+    for (scenario, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
+        let mut series = Vec::new();
+        for (method, planned_method) in plan.methods.iter().enumerate() {
+            let units = (1..=plan.seeds).map(|seed| Unit { scenario, method, seed });
+            let histories: Vec<Vec<Moment>> =
+                units.map(|unit| unit.history(plan, campaign)).collect::<Result<_, _>>()?;
+            let moments = histories.iter().map(Vec::len).min().unwrap_or(0);
+            let point = |moment: usize| {
+                let values: Vec<f64> = histories.iter().map(|history| history[moment].hypervolume).collect();
+                Some((histories.first()?[moment].evaluations as u64, quartiles(&values)?))
+            };
+            let points = (0..moments).filter_map(point).collect();
+            series.push(report::ConvergenceSeries { label: planned_method.name.clone(), points });
+        }
+        panels.push(report::ConvergencePanel { title: planned.scenario.name().into(), series });
+    }
+    let [nodes, f2] = REFERENCE;
+    Ok(report::ConvergenceFigure { panels, y_label: format!("hypervolume below {nodes} nodes and f2 = {f2}") })
+}
+
+fn rates(tables: &Tables) -> Result<String, FigureError> {
+    let mut groups: Vec<report::RateGroup> = Vec::new();
+    for row in &tables.transfers {
+        let title = match row.from.as_str() {
+            "" => format!("given models in {}", row.transfer),
+            from => format!("evolved for {from}, in {}", row.transfer),
+        };
+        let line = report::RateRow { label: row.method.clone(), rate: row.rate, interval: (row.low, row.high) };
+        match groups.iter_mut().find(|group| group.title == title) {
+            Some(group) => group.rows.push(line),
+            None => groups.push(report::RateGroup { title, rows: vec![line] }),
+        }
+    }
+    report::rates(&report::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() })
 }

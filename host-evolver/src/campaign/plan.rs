@@ -12,6 +12,9 @@ use std::path::Path;
 /// The most runs of one method in one scenario.
 const MOST_SEEDS: u64 = 10_000;
 
+/// The most methods of a campaign.
+const MOST_METHODS: usize = 6;
+
 /// A checked campaign, its files read.
 pub struct Plan {
     /// Name of the campaign.
@@ -34,6 +37,8 @@ pub struct PlannedScenario {
     pub scenario: Scenario,
     /// Budget of each run: evaluations of f2.
     pub evaluations: usize,
+    /// Whether it is a variation of another.
+    pub varied: bool,
 }
 
 /// A method under its name in the tables.
@@ -129,7 +134,8 @@ impl Plan {
         for ScenarioTable { file: name, evaluations } in file.scenarios {
             let original = load(&name)?;
             for scenario in file.vary.of(&original).map_err(|error| FileError::new(path, error))? {
-                scenarios.push(PlannedScenario { scenario, evaluations });
+                let varied = scenario.name() != original.name();
+                scenarios.push(PlannedScenario { scenario, evaluations, varied });
             }
         }
         let model = |table: ModelTable| -> Result<PlannedModel, FileError> {
@@ -165,6 +171,12 @@ impl Plan {
         unique("model", self.models.iter().map(|planned| planned.name.as_str()))?;
         if self.scenarios.is_empty() || self.methods.is_empty() {
             return Err("at least one [[scenario]] and one [[method]] are needed".into());
+        }
+        if self.methods.len() > MOST_METHODS {
+            let found = self.methods.len();
+            return Err(format!(
+                "{found} methods: figures tell at most {MOST_METHODS} apart; make two campaigns of it"
+            ));
         }
         let known: Vec<&str> = self.scenarios.iter().map(|planned| planned.scenario.name()).collect();
         for transfer in &self.transfers {

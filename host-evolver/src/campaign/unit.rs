@@ -47,6 +47,8 @@ pub struct Member {
     pub violation: f64,
     /// Which knee it is, in words; empty for none.
     pub knee: String,
+    /// Prefix notation with θ.
+    pub expression: String,
 }
 
 /// A line of a run's `history.csv`.

@@ -11,6 +11,9 @@ const HELP: &str = "cargo xtask TASK
   test   build everything and run all tests; ends with a line that counts them
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn (look at the difference before you commit)
+  reproduce
+         run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
+         and write docs/reproduction.md with its figures and tables
   fuzz   feed the blob decoder 10 million mutated inputs, then 10 million of libFuzzer's
          (the second part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
 ";
@@ -21,6 +24,7 @@ fn main() -> ExitCode {
         "test" => test(),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
+        "reproduce" => reproduce(),
         "fuzz" => fuzz(),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
@@ -60,6 +64,18 @@ fn test() -> bool {
     let all = succeeded.into_iter().all(|success| success);
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed.max(usize::from(!all)), tally.ignored);
     all && tally.failed == 0 && tally.passed > 0
+}
+
+fn reproduce() -> bool {
+    const CAMPAIGNS: [&str; 3] = ["paper", "sensitivity", "de-generations"];
+    let done = CAMPAIGNS.iter().all(|name| {
+        let (file, out) = (format!("campaigns/{name}.toml"), format!("runs/{name}"));
+        cargo(&["run", "--release", "--package", "host-evolver", "--", "campaign", &file, "--out", &out], &[])
+    });
+    let folders = CAMPAIGNS.map(|name| format!("runs/{name}"));
+    let mut write = vec!["run", "--release", "--package", "grn-tests", "--bin", "reproduce", "--"];
+    write.extend(folders.iter().map(String::as_str));
+    done && cargo(&write, &[])
 }
 
 fn fuzz() -> bool {

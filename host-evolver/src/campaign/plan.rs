@@ -147,13 +147,24 @@ impl Plan {
         let mut transfers = Vec::new();
         for table in file.transfers {
             let world = load(&table.file)?;
-            let worlds = match &table.random {
-                None => vec![world],
-                Some(random) => random
-                    .worlds(&world)
-                    .map_err(|error| FileError::new(path, format!("transfer {:?}: {error}", table.name)))?,
-            };
-            transfers.push(PlannedTransfer { name: table.name, from: table.from, worlds });
+            let fault = |error| FileError::new(path, format!("transfer {:?}: {error}", table.name));
+            match &table.random {
+                Some(random) => transfers.push(PlannedTransfer {
+                    worlds: random.worlds(&world).map_err(fault)?,
+                    name: table.name,
+                    from: table.from,
+                }),
+                None => {
+                    for varied in file.vary.of(&world).map_err(fault)? {
+                        let change = varied.name().strip_prefix(world.name()).unwrap_or_default();
+                        transfers.push(PlannedTransfer {
+                            name: format!("{}{change}", table.name),
+                            from: table.from.iter().map(|from| format!("{from}{change}")).collect(),
+                            worlds: vec![varied],
+                        });
+                    }
+                }
+            }
         }
         let plan = Plan { name: file.name, seeds: file.seeds, scenarios, methods: file.methods, models, transfers };
         plan.check().map_err(|fault| FileError::new(path, fault))?;

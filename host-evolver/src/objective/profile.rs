@@ -73,6 +73,9 @@ impl Profile {
             return Lanes(squared_distances.0.map(|squared| self.at(squared)));
         }
         let last = (self.knots.len() - 2) as f64;
+        if squared_distances.0.iter().all(|&squared| squared * self.per_spacing >= last) {
+            return Lanes::splat(self.knots[self.knots.len() - 2][0]);
+        }
         let places = squared_distances.0.map(|squared| (squared * self.per_spacing).min(last));
         let indices = places.map(|place| place as u32);
         let knots = indices.map(|index| [self.knots[index as usize], self.knots[index as usize + 1]]);

@@ -8,7 +8,9 @@ const SUSPECT: f64 = 0.01;
 /// The same where x2 has a crease: there a chord can miss a corner by more than the turns at its ends tell.
 const SUSPECT_AT_CREASE: f64 = 0.006;
 /// A chord that misses the contour by more than this is split, metres.
-const TOLERATED: f64 = 0.005;
+const TOLERATED: f64 = 0.006;
+/// A chord that missed it by less leaves halves that follow it: those of an arc miss it by a quarter.
+const HALVES_FOLLOW: f64 = 2.5 * TOLERATED;
 /// A chord is halved at most this many times.
 const DEEPEST: u32 = 4;
 
@@ -26,18 +28,45 @@ pub(super) fn sharpened(
         may_miss(&ring, place, SUSPECT_AT_CREASE)
             && (may_miss(&ring, place, SUSPECT) || is_at_crease((ring[place] + ring[(place + 1) % count]) * 0.5))
     };
-    let suspect: Vec<bool> = (0..count).map(is_suspect).collect();
-    if !suspect.contains(&true) {
+    let suspects: Vec<usize> = (0..count).filter(|&place| is_suspect(place)).collect();
+    let missing = missing(&ring, &suspects, &errors);
+    if missing.is_empty() {
         return ring;
     }
     let mut sharp = Vec::with_capacity(2 * count);
     for place in 0..count {
         sharp.push(ring[place]);
-        if suspect[place] {
+        if missing.contains(&place) {
             split(ring[place], ring[(place + 1) % count], DEEPEST, &errors, &mut sharp);
         }
     }
     sharp
+}
+
+/// Those suspects that do miss the contour, as far as the error in a chord's middle and just beside it can tell.
+fn missing(ring: &[Point<f64>], suspects: &[usize], errors: &impl Fn(&[Point<f64>; WIDTH]) -> Lanes) -> Vec<usize> {
+    let mut missing = Vec::new();
+    for places in suspects.chunks(WIDTH) {
+        let chords: [_; WIDTH] = std::array::from_fn(|lane| {
+            let place = places[lane.min(places.len() - 1)];
+            (ring[place], ring[(place + 1) % ring.len()])
+        });
+        let middles = chords.map(|(from, to)| (from + to) * 0.5);
+        let here = errors(&middles).0;
+        let beside = errors(&std::array::from_fn(|lane| {
+            let (from, to) = chords[lane];
+            middles[lane] + inwards_of(to - from) * if here[lane] < 0.0 { TOLERATED } else { -TOLERATED }
+        }));
+        let misses = |lane: &usize| (here[*lane] < 0.0) == (beside.0[*lane] < 0.0);
+        missing.extend((0..places.len()).filter(misses).map(|lane| places[lane]));
+    }
+    missing
+}
+
+/// The unit vector to the right of `along`, where the inside is.
+fn inwards_of(along: Vector<f64>) -> Vector<f64> {
+    let length = along.length();
+    if length == 0.0 { Vector::new(0.0, 0.0) } else { Vector::new(along.y, -along.x) * (1.0 / length) }
 }
 
 /// Whether the chord from the point at `place` may miss the contour by a distance: by a quarter of its length times the turn at an end.
@@ -62,7 +91,12 @@ fn split(
     let chord = to - from;
     let middle = from + chord * 0.5;
     let Some(found) = crossing(middle, chord, errors) else { return };
-    if depth == 0 || (found - middle).length() < TOLERATED {
+    let missed_by = (found - middle).length();
+    if depth == 0 || missed_by < TOLERATED {
+        return;
+    }
+    if missed_by < HALVES_FOLLOW {
+        points.push(found);
         return;
     }
     split(from, found, depth - 1, errors, points);
@@ -80,7 +114,7 @@ fn crossing(
     if length == 0.0 {
         return None;
     }
-    let inwards = Vector::new(along.y, -along.x) * (1.0 / length);
+    let inwards = inwards_of(along);
     let at = |distances: [f64; WIDTH]| errors(&distances.map(|distance| point + inwards * distance)).0;
     let distances = LOOKED_AT.map(|share| share * length);
     let found = at(distances);

@@ -101,7 +101,7 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
     let mut whole_runs = Vec::new();
     for kill in 0..20 {
         let mut child = campaign(&plan, &killed, &[]).spawn()?;
-        std::thread::sleep(Duration::from_millis(20 + (kill * 137) % 400));
+        std::thread::sleep(Duration::from_millis(20 + (kill * 617) % 1900));
         child.kill()?;
         child.wait()?;
         whole_runs.push(content(&killed.join("runs")).map_or(0, |files| files.len()));
@@ -142,7 +142,9 @@ fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     refused(&small().replace("[\"channel\"]", "[\"canal\"]"), &[], &["canal", "channel"])?;
     refused(&small().replace("nand-xnor.grn", "nothing.grn"), &[], &["nothing.grn", "cannot be read"])?;
     refused(&small().replace("\"EH-GRN 2\"", "\"mogp\""), &[], &["mogp", "another"])?;
-    refused(&small().replace("density = 0.03", "density = 0.4"), &[], &["random obstacles", "density", "no room"])?;
+    refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["random obstacles", "density", "no room"])?;
+    refused(&small().replace("worlds = 3", "worlds = 3, depth = 1"), &[], &["campaign.toml", "depth"])?;
+    refused(&small().replace("structure = 2", "structure = 2\ncolour = 1"), &[], &["campaign.toml", "colour"])?;
     refused(&small(), &["--shard", "3/2"], &["3/2", "2/3"])?;
     refused(&small(), &["--merge", "nowhere"], &["nowhere", "no such folder"])?;
 

@@ -211,3 +211,19 @@ fn bad_input_is_refused_by_name() -> Outcome {
     assert_refused(&eval.wait_with_output()?, &["line 2", "0.5;0.5"]);
     Ok(())
 }
+
+#[test]
+fn scattered_worlds_are_scenarios_like_any_other() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    let world = scratch.path().join("world.toml");
+    let open = repository("scenarios/open.toml");
+    let written = grn().arg("scatter").arg(&open).args(["--seed", "7", "--out"]).arg(&world).output()?;
+    assert_eq!(written.status.code(), Some(0), "{}", text(&written.stderr));
+    let printed = grn().arg("scatter").arg(&open).args(["--seed", "7"]).output()?;
+    assert_eq!(text(&printed.stdout), std::fs::read_to_string(&world)?);
+    let drawn = grn().arg("draw").arg(repository("models/andn-nand-xnor.grn")).arg(&world).arg("--json").output()?;
+    assert!(text(&drawn.stdout).contains("clearance_min"), "{}", text(&drawn.stderr));
+    let crowded = grn().arg("scatter").arg(&open).args(["--density", "0.5", "--clearance", "9"]).output()?;
+    assert_refused(&crowded, &["density", "0.5", "no room"]);
+    Ok(())
+}

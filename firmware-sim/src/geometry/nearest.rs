@@ -3,8 +3,9 @@
 use super::{Bounds, Edge, Polygon, length_squared};
 use grn_core::geometry::{Point, Vector};
 
-/// Cells along either axis.
+/// Cells along either axis, and along either side of a block of them that is looked at first.
 const CELLS: usize = 128;
+const BLOCK: usize = 8;
 /// How far the grid reaches beyond the walls, in extents of the walls.
 const MARGIN: f64 = 0.25;
 /// Covers rounding when distances to a cell's centre are compared.
@@ -31,7 +32,6 @@ impl NearestEdges {
         let low = bounds.low - extent * MARGIN;
         let cell = extent * ((1.0 + 2.0 * MARGIN) / CELLS as f64);
         let edges: Vec<Edge> = polygons.iter().flat_map(Polygon::edges).copied().collect();
-        let half = (cell * 0.5).length();
         let mut grid = NearestEdges {
             low,
             per_cell: Vector::new(1.0 / cell.x, 1.0 / cell.y),
@@ -40,21 +40,36 @@ impl NearestEdges {
             candidates: Vec::new(),
             outside: Vec::with_capacity(CELLS * CELLS),
         };
-        let mut distances = vec![0.0; grid.edges.len()];
-        for place in 0..CELLS * CELLS {
-            let (column, row) = ((place % CELLS) as f64 + 0.5, (place / CELLS) as f64 + 0.5);
-            let centre = low + Vector::new(column * cell.x, row * cell.y);
-            for (distance, edge) in distances.iter_mut().zip(&grid.edges) {
-                *distance = (edge.nearest(centre) - centre).length();
+        let centre_of = |column: usize, row: usize, size: usize| {
+            let half = size as f64 / 2.0;
+            low + Vector::new((column as f64 + half) * cell.x, (row as f64 + half) * cell.y)
+        };
+        let half = (cell * 0.5).length();
+        let all: Vec<u32> = (0..grid.edges.len() as u32).collect();
+        let mut blocks = Vec::new();
+        for row in 0..CELLS {
+            if row % BLOCK == 0 {
+                let centres = (0..CELLS).step_by(BLOCK).map(|column| centre_of(column, row, BLOCK));
+                blocks = centres.map(|centre| grid.nearest_within(centre, half * BLOCK as f64, &all).0).collect();
             }
-            let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-            let reach = nearest + 2.0 * half + SLACK * (nearest + half);
-            grid.candidates
-                .extend((0_u32..).zip(&distances).filter(|(_, distance)| **distance <= reach).map(|(at, _)| at));
-            grid.starts.push(grid.candidates.len() as u32);
-            grid.outside.push(nearest > half && !polygons.iter().any(|polygon| polygon.contains(centre)));
+            for column in 0..CELLS {
+                let centre = centre_of(column, row, 1);
+                let (candidates, nearest) = grid.nearest_within(centre, half, &blocks[column / BLOCK]);
+                grid.candidates.extend(candidates);
+                grid.starts.push(grid.candidates.len() as u32);
+                grid.outside.push(nearest > half && !polygons.iter().any(|polygon| polygon.contains(centre)));
+            }
         }
         Some(grid)
+    }
+
+    /// Those edges of some that may be nearest to a point within `radius` of `centre`, and the distance of the nearest to it.
+    fn nearest_within(&self, centre: Point<f64>, radius: f64, among: &[u32]) -> (Vec<u32>, f64) {
+        let distance = |edge: u32| (self.edges[edge as usize].nearest(centre) - centre).length();
+        let distances: Vec<(u32, f64)> = among.iter().map(|&edge| (edge, distance(edge))).collect();
+        let nearest = distances.iter().map(|(_, distance)| *distance).fold(f64::INFINITY, f64::min);
+        let reach = nearest + 2.0 * radius + SLACK * (nearest + radius);
+        (distances.iter().filter(|(_, distance)| *distance <= reach).map(|(edge, _)| *edge).collect(), nearest)
     }
 
     fn cell(&self, point: Point<f64>) -> Option<usize> {

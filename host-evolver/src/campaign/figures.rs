@@ -3,7 +3,6 @@
 use super::plan::{Plan, PlannedScenario, slug};
 use super::tables::{Measure, RunRow, Tables};
 use super::unit::{Moment, Unit};
-use crate::evolve::REFERENCE;
 use crate::figures::{pareto_of, pattern};
 use crate::files::{self, FileError, read_blob};
 use crate::objective::{Model, World};
@@ -12,7 +11,8 @@ use crate::statistics::quartiles;
 use crate::{describe, report::KneeKind};
 use std::path::Path;
 
-/// Draws everything into the campaign's folder. Variations of a scenario are in the tables only.
+/// Draws everything into the campaign's folder. Variations of a scenario are in the tables only, and so is what became of
+/// one model in one world.
 pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(), FileError> {
     let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
     let draw = |name: &str, figure: Result<String, FigureError>| {
@@ -29,7 +29,7 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
         draw(name, boxes(plan, &scenarios, tables, measure))?;
     }
     draw("convergence.svg", report::convergence(&convergence(plan, campaign)?))?;
-    if !tables.transfers.is_empty() {
+    if tables.transfers.iter().any(|row| row.runs * row.worlds > 1) {
         draw("transfers.svg", rates(tables))?;
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
@@ -121,13 +121,12 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<report::ConvergenceFigure
         }
         panels.push(report::ConvergencePanel { title: planned.scenario.name().into(), series });
     }
-    let [nodes, f2] = REFERENCE;
-    Ok(report::ConvergenceFigure { panels, y_label: format!("hypervolume below {nodes} nodes and f2 = {f2}") })
+    Ok(report::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
 }
 
 fn rates(tables: &Tables) -> Result<String, FigureError> {
     let mut groups: Vec<report::RateGroup> = Vec::new();
-    for row in &tables.transfers {
+    for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),

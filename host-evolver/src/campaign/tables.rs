@@ -164,7 +164,9 @@ pub struct TransferRow {
     pub successes: usize,
     /// Share of successes.
     pub rate: f64,
-    /// Lower end of the 95 % interval: Wilson's for one run, else of the bootstrap over runs and worlds.
+    /// Lower end of the 95 % interval: of the bootstrap over runs and worlds; Wilson's for a given model, and where every
+    /// trial ended alike, then for as many trials as there are runs or worlds, whichever are more. A single trial is a
+    /// fact: both ends are the rate.
     pub low: f64,
     /// Upper end.
     pub high: f64,
@@ -298,6 +300,21 @@ fn comparison(measure: Measure, rows: &[&RunRow], against: &[&RunRow]) -> Option
     })
 }
 
+/// The 95 % interval of a success rate over runs and worlds.
+fn interval(succeeded: &[Vec<bool>]) -> (f64, f64) {
+    let worlds = succeeded.iter().map(Vec::len).max().unwrap_or(0);
+    let successes = succeeded.iter().flatten().filter(|&&success| success).count();
+    let count: usize = succeeded.iter().map(Vec::len).sum();
+    let independent = succeeded.len().max(worlds);
+    match successes {
+        _ if count == 1 => (successes as f64, successes as f64),
+        _ if succeeded.len() == 1 => wilson(successes, count),
+        0 => wilson(0, independent),
+        _ if successes == count => wilson(independent, independent),
+        _ => bootstrap_rate(succeeded),
+    }
+}
+
 fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
     // In the order of the plan: groups as they come, in each the sources as they come.
     let mut sources: Vec<(&str, &str, &str)> = Vec::new();
@@ -319,7 +336,7 @@ fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
             runs.iter().map(|trials| trials.iter().map(|trial| trial.violation == 0.0).collect()).collect();
         let count: usize = succeeded.iter().map(Vec::len).sum();
         let successes = succeeded.iter().flatten().filter(|&&success| success).count();
-        let (low, high) = if runs.len() == 1 { wilson(successes, count) } else { bootstrap_rate(&succeeded) };
+        let (low, high) = interval(&succeeded);
         let f2 = |trial: &&&Trial| if trial.violation == 0.0 { trial.f2 } else { INFEASIBLE + trial.violation };
         let all: Vec<f64> = runs.iter().flat_map(|trials| trials.iter()).map(|trial| f2(&trial)).collect();
         TransferRow {
@@ -336,4 +353,22 @@ fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
         }
     };
     sources.iter().enumerate().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_tell_what_was_sampled() {
+        assert_eq!(interval(&[vec![true]]), (1.0, 1.0));
+        let (low, high) = interval(&[vec![true, false, true, true]]);
+        assert!(low < 0.75 && 0.75 < high);
+        let (low, high) = interval(&vec![vec![false; 200]; 30]);
+        assert!(low == 0.0 && (0.015..0.02).contains(&high), "30 runs of 200 worlds are not 6000 trials: {high}");
+        let (low, high) = interval(&vec![vec![true]; 30]);
+        assert!((0.88..0.89).contains(&low) && high == 1.0, "{low}");
+        let (low, high) = interval(&[vec![true, false], vec![true, true], vec![false, false]]);
+        assert!(low < 0.5 && 0.5 < high);
+    }
 }

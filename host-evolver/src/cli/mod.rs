@@ -5,6 +5,7 @@ mod draw;
 mod eval;
 mod evolve;
 mod interrupt;
+mod scatter;
 mod show;
 mod simulate;
 
@@ -31,6 +32,8 @@ enum Command {
     Campaign(campaign::Arguments),
     /// Run a blob on every robot of a simulated swarm.
     Simulate(simulate::Arguments),
+    /// Throw round obstacles at random around the targets' paths of a scenario.
+    Scatter(scatter::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
     Show(show::Arguments),
     /// Read `x1,x2` lines from standard input and print the steady state M of each.
@@ -69,6 +72,7 @@ pub fn run() -> ExitCode {
         Command::Evolve(arguments) => evolve::run(&arguments),
         Command::Campaign(arguments) => campaign::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Scatter(arguments) => scatter::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Draw(arguments) => draw::run(&arguments),

@@ -5,10 +5,12 @@ use super::error::{FigureError, finite};
 use super::legend::{Key, legend};
 use super::panels::{Grid, value_axis};
 use super::style::{DATA, SERIES, SMALL};
-use super::svg::{Paint, Svg, poly};
+use super::svg::{Paint, Rect, Svg, poly};
 use crate::statistics::Quartiles;
 
 const HEIGHT: f64 = 110.0;
+/// Half of the widest number below the right end of an axis.
+const LAST_NUMBER: f64 = 9.0;
 /// A row of panels: title, chart, numbers and words below it.
 const ROW: f64 = 14.0 + HEIGHT + 32.0;
 
@@ -60,7 +62,8 @@ pub fn convergence(figure: &ConvergenceFigure) -> Result<String, FigureError> {
     let (head, _) = legend(&mut svg, 45.0, 10.0, grid.width - 4.0, SMALL, &keys);
     for (i, panel) in figure.panels.iter().enumerate() {
         let top = head + 4.0 + ROW * grid.row(i) as f64;
-        let rect = grid.rect(i, top + 14.0, HEIGHT);
+        let room = grid.rect(i, top + 14.0, HEIGHT);
+        let rect = Rect { w: room.w - LAST_NUMBER, ..room };
         grid.words(&mut svg, i, &rect, (&panel.title, top + 10.0), &figure.y_label);
         let (unit, x_label) = unit(panel);
         let chart = Chart { rect, x: time_axis(panel, unit), y: values(panel), x_label, y_label: "", x_numbers: true };

@@ -14,7 +14,7 @@ const LINE: f64 = 8.4;
 /// Widest line of a row's name.
 const NAME: f64 = 92.0;
 /// Room right of the axis for numbers.
-const NUMBERS: f64 = 58.0;
+const NUMBERS: f64 = 66.0;
 
 /// What [`rates`] shows.
 #[derive(Debug, Clone, PartialEq)]

@@ -111,8 +111,8 @@ pub fn report(campaigns: &Campaigns) -> Result<String, Missing> {
     let seeds = campaigns.paper.summary(CHANNEL, ALL, Measure::BestF2)?.runs;
     let mut page = format!(
         "# The paper, reproduced\n\n\
-         Fan et al. 2019, \"Automatic design of swarm patterns by multi-objective genetic programming\" in our reading \
-         (`docs/model.md`), run again with {seeds} seeds a method. `cargo xtask reproduce` makes this page and \
+         Fan et al. 2019, *An Automatic Design Framework of Swarm Pattern Formation based on Multi-objective Genetic \
+         Programming*, in our reading (`docs/model.md`), run again with {seeds} seeds a method. `cargo xtask reproduce` makes this page and \
          everything in `docs/reproduction/` from three campaigns (`campaigns/*.toml`); nothing here is written by hand \
          but the words. The figures of the paper are lost, so the geometry of the worlds is ours.\n\n\
          Medians are given with quartiles over seeds, success rates with 95 % intervals (Wilson's for a given model, \

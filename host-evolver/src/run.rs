@@ -101,8 +101,8 @@ impl RunFolder {
         Ok(run)
     }
 
-    /// Continues a run, or begins it if the folder does not hold one yet. The state is `None` before the first
-    /// checkpoint.
+    /// Continues a run, or begins it if the folder does not hold one yet; files that a killed process left half-written
+    /// go. The state is `None` before the first checkpoint.
     ///
     /// # Errors
     /// A run made with another scenario, other settings or another version, or damaged files.
@@ -117,6 +117,7 @@ impl RunFolder {
             let way_out = "give the same settings to --resume, or choose another folder with --out";
             return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")).into());
         }
+        files::remove_unfinished(folder)?;
         let checkpoint = run.path(CHECKPOINT);
         let state = if checkpoint.exists() { Some(files::read_json(&checkpoint)?) } else { None };
         Ok((run, state))

@@ -72,6 +72,9 @@ fn evolve_leaves_the_same_folder_for_any_threads_and_after_any_kill() -> Outcome
             child.kill()?;
             child.wait()?;
         }
+        // What a kill in the midst of writing a blob leaves.
+        std::fs::create_dir_all(folder.join("front"))?;
+        std::fs::write(folder.join("front/.unfinished-blob"), "GRN")?;
         let output = evolve(&folder, &["--seed", "5", "--resume"]).output()?;
         assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
         assert!(results(&folder)? == expected, "killed and resumed, the result is another");

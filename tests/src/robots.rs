@@ -1,0 +1,58 @@
+//! Simulated robots with blobs on them, for the tests of slots and link.
+
+use firmware_sim::flash::{SECTOR, SimulatedFlash};
+use grn_core::blob::{Blob, Identity, max_encoded_size};
+use grn_core::network::DEFAULT_GENES;
+use grn_core::robot::slots::Layout;
+
+/// Both slots in two sectors each.
+pub const LAYOUT: Layout = Layout::adjacent(2 * SECTOR as u32);
+
+/// An empty flash that [`LAYOUT`] fits.
+pub fn empty_flash(seed: u64) -> SimulatedFlash {
+    SimulatedFlash::erased(4, seed)
+}
+
+/// A blob that ships with the software.
+#[derive(Clone, Debug)]
+pub struct Shipped {
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+    /// Its identity.
+    pub identity: Identity,
+}
+
+impl Shipped {
+    /// `models/NAME.grn`.
+    ///
+    /// # Panics
+    /// If there is no such blob.
+    pub fn named(name: &str) -> Self {
+        let path = format!("{}/../models/{name}.grn", env!("CARGO_MANIFEST_DIR"));
+        let bytes = std::fs::read(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        Shipped::of(&bytes)
+    }
+
+    /// A blob's bytes.
+    ///
+    /// # Panics
+    /// If they are none.
+    pub fn of(bytes: &[u8]) -> Self {
+        let blob = Blob::<DEFAULT_GENES>::decode(bytes).unwrap_or_else(|error| panic!("{error}"));
+        Shipped { bytes: bytes.to_vec(), identity: blob.identity() }
+    }
+
+    /// The same blob with another cruising speed: another identity, the same length.
+    ///
+    /// # Panics
+    /// If the speed is out of range.
+    #[must_use]
+    pub fn cruising_at(&self, speed: f32) -> Self {
+        let decoded = Blob::<DEFAULT_GENES>::decode(&self.bytes);
+        let mut blob = decoded.unwrap_or_else(|error| panic!("{error}"));
+        blob.gains.cruise = speed;
+        let mut buffer = [0; max_encoded_size(DEFAULT_GENES)];
+        let bytes = blob.encode(&mut buffer).unwrap_or_else(|error| panic!("{error}"));
+        Shipped::of(bytes)
+    }
+}

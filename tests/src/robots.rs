@@ -2,7 +2,7 @@
 
 use firmware_sim::flash::{SECTOR, SimulatedFlash};
 use grn_core::blob::{Blob, Identity, max_encoded_size};
-use grn_core::network::DEFAULT_GENES;
+use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::robot::slots::Layout;
 
 /// Both slots in two sectors each.
@@ -55,4 +55,19 @@ impl Shipped {
         let bytes = blob.encode(&mut buffer).unwrap_or_else(|error| panic!("{error}"));
         Shipped::of(bytes)
     }
+}
+
+/// A sound blob of the printed two-gene model with so many genes, all but two idle: more than a robot may hold.
+///
+/// # Panics
+/// If there are more than 64.
+pub fn blob_of_genes(genes: usize) -> Vec<u8> {
+    let blob = Blob::<64>::decode(&Shipped::named("nand-xnor").bytes).unwrap_or_else(|error| panic!("{error}"));
+    let model = blob.network.genes();
+    let idle = model.iter().take(1).cycle().take(genes - model.len());
+    let network = Network::new(blob.network.steepness(), model.iter().take(1).chain(idle).chain(&model[1..]).cloned());
+    let network = network.unwrap_or_else(|error| panic!("{error}"));
+    let mut buffer = [0; max_encoded_size(64)];
+    let bytes = Blob { network, ..blob }.encode(&mut buffer).map(<[u8]>::to_vec);
+    bytes.unwrap_or_else(|error| panic!("{error}"))
 }

@@ -33,6 +33,16 @@ impl<W: Wire + ?Sized> Wire for Box<W> {
     }
 }
 
+impl<W: Wire + ?Sized> Wire for &mut W {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        (**self).send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> io::Result<usize> {
+        (**self).receive(buffer, patience)
+    }
+}
+
 /// What came of reading with a time limit.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 use embedded_storage::nor_flash::NorFlash;
 use firmware_sim::flash::SimulatedFlash;
 use grn_core::blob::{Blob, Identity};
-use grn_core::robot::slots::{Layout, MAX_BLOB, MIN_SLOT, SlotError, Slots, Stage};
+use grn_core::robot::slots::{Layout, MAX_BLOB, MIN_SLOT, SlotError, Slots, Stage, image};
 use grn_tests::robots::{LAYOUT, Shipped, empty_flash};
 
 type Outcome = Result<(), SlotError>;
@@ -115,6 +115,23 @@ fn what_does_not_fit_is_refused() -> Outcome {
     let misnamed = Shipped { identity: old.identity, ..new };
     assert_eq!(upload(&mut slots, &misnamed), Err(SlotError::OtherBlob));
     assert_eq!(slots.activate(old.identity), Err(SlotError::NotThere));
+    Ok(())
+}
+
+#[test]
+fn an_image_for_a_programmer_is_in_charge() -> Outcome {
+    let [new, old, older] = models();
+    for slot in [0, 1] {
+        let mut flash = with_history(&old, &older, 0);
+        let image = image(&new.bytes, 1_700_000_000)?;
+        let start_of = LAYOUT.starts[slot] as usize;
+        flash.bytes_mut()[start_of..start_of + image.len()].copy_from_slice(&image);
+        let (mut slots, active) = start(flash)?;
+        assert_eq!(active, Some(new.identity));
+        assert_eq!(slots.status()?[slot].stage, Stage::Confirmed);
+        install(&mut slots, &older)?;
+        assert_eq!(start(slots.into_flash())?.1, Some(older.identity));
+    }
     Ok(())
 }
 

@@ -128,6 +128,23 @@ pub struct SlotStatus {
     pub sequence: u32,
 }
 
+/// The bytes of a slot that holds this blob, confirmed: for flashing by a programmer instead of through the link.
+///
+/// # Errors
+/// [`SlotError::TooLong`], [`SlotError::Blob`].
+pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }>, SlotError> {
+    let identity = Blob::<DEFAULT_GENES>::decode(blob).map_err(SlotError::Blob)?.identity();
+    let header = Header { length: blob.len() as u32, sequence, identity }.encode();
+    let marks = [Mark::Verified, Mark::Activated, Mark::Confirmed].map(Mark::encode);
+    let mut image: Vec<u8, { MIN_SLOT as usize }> = Vec::new();
+    let mut append = |bytes: &[u8]| image.extend_from_slice(bytes).map_err(|_| SlotError::TooLong);
+    append(&header)?;
+    append(marks.as_flattened())?;
+    append(&[0xff; UNIT * (MARKS - 3)])?;
+    append(blob)?;
+    Ok(image)
+}
+
 /// An upload under way.
 #[derive(Clone, Copy, Debug)]
 struct Upload {

@@ -396,12 +396,12 @@ impl<F: NorFlash> Slots<F> {
     }
 
     fn blob(&mut self, slot: usize, length: u32) -> Result<Result<Blob, BlobError>, SlotError> {
-        let mut bytes: Vec<u8, { MAX_BLOB.next_multiple_of(UNIT) }> = Vec::new();
-        let padded = (length as usize).next_multiple_of(UNIT);
-        if length as usize > MAX_BLOB || bytes.resize(padded, 0).is_err() {
+        let mut bytes = [0; MAX_BLOB.next_multiple_of(UNIT)];
+        let padded = (length as usize).checked_next_multiple_of(UNIT);
+        let Some(padded) = padded.and_then(|padded| bytes.get_mut(..padded)) else {
             return Ok(Err(BlobError::Truncated));
-        }
-        self.flash.read(self.start_of(slot) + CONTENT, &mut bytes)?;
-        Ok(Blob::decode(bytes.get(..length as usize).unwrap_or_default()))
+        };
+        self.flash.read(self.start_of(slot) + CONTENT, padded)?;
+        Ok(padded.get(..length as usize).map_or(Err(BlobError::Truncated), Blob::decode))
     }
 }

@@ -9,6 +9,7 @@ pub mod epuck2;
 mod knowledge;
 pub mod message;
 mod motion;
+mod neighbours;
 mod obstacles;
 pub mod percept;
 

@@ -88,7 +88,8 @@ fn files_for_a_programmer_hold_the_slot() -> Outcome {
     let place = out.to_str().ok_or("not UTF-8")?;
     let blob = model("nand-xnor");
     let flash = |more: &[&str]| grn(&[&["flash", &blob, "--out", place, "--sequence", "9"], more].concat());
-    let lines = ["0x080c0000 to 0x080c", "upload number 9", "arm-none-eabi-gdb", "dfu-util -d 0483:df11 -a 0 -s 0x080c0000"];
+    let lines =
+        ["0x080c0000 to 0x080c", "upload number 9", "arm-none-eabi-gdb", "dfu-util -d 0483:df11 -a 0 -s 0x080c0000"];
     assert_answer(&flash(&["--dry-run"])?, 0, &lines);
     assert!(!out.exists());
     assert_answer(&flash(&[])?, 0, &lines);
@@ -126,7 +127,10 @@ fn what_no_robot_takes_is_refused_with_a_way_out() -> Outcome {
     let port = robot()?;
     let capacity = DEFAULT_GENES.to_string();
     let cases = [
-        (spoilt(folder.path(), "old.grn", |bytes| bytes[4] -= 1)?, vec!["old.grn", "version 0", "write the blob again"]),
+        (
+            spoilt(folder.path(), "old.grn", |bytes| bytes[4] -= 1)?,
+            vec!["old.grn", "version 0", "write the blob again"],
+        ),
         (spoilt(folder.path(), "future.grn", |bytes| bytes[4] += 1)?, vec!["future.grn", "version 2", "update"]),
         (spoilt(folder.path(), "short.grn", |bytes| bytes.truncate(50))?, vec!["short.grn", "copy or upload it again"]),
         (spoilt(folder.path(), "large.grn", of_forty_genes)?, vec!["large.grn", "40 genes", &capacity]),

@@ -128,6 +128,23 @@ pub struct SlotStatus {
     pub sequence: u32,
 }
 
+/// The bytes of a slot that holds this blob, confirmed: for flashing by a programmer instead of through the link.
+///
+/// # Errors
+/// [`SlotError::TooLong`], [`SlotError::Blob`].
+pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }>, SlotError> {
+    let identity = Blob::<DEFAULT_GENES>::decode(blob).map_err(SlotError::Blob)?.identity();
+    let header = Header { length: blob.len() as u32, sequence, identity }.encode();
+    let marks = [Mark::Verified, Mark::Activated, Mark::Confirmed].map(Mark::encode);
+    let mut image: Vec<u8, { MIN_SLOT as usize }> = Vec::new();
+    let mut append = |bytes: &[u8]| image.extend_from_slice(bytes).map_err(|_| SlotError::TooLong);
+    append(&header)?;
+    append(marks.as_flattened())?;
+    append(&[0xff; UNIT * (MARKS - 3)])?;
+    append(blob)?;
+    Ok(image)
+}
+
 /// An upload under way.
 #[derive(Clone, Copy, Debug)]
 struct Upload {
@@ -379,12 +396,12 @@ impl<F: NorFlash> Slots<F> {
     }
 
     fn blob(&mut self, slot: usize, length: u32) -> Result<Result<Blob, BlobError>, SlotError> {
-        let mut bytes: Vec<u8, { MAX_BLOB.next_multiple_of(UNIT) }> = Vec::new();
-        let padded = (length as usize).next_multiple_of(UNIT);
-        if length as usize > MAX_BLOB || bytes.resize(padded, 0).is_err() {
+        let mut bytes = [0; MAX_BLOB.next_multiple_of(UNIT)];
+        let padded = (length as usize).checked_next_multiple_of(UNIT);
+        let Some(padded) = padded.and_then(|padded| bytes.get_mut(..padded)) else {
             return Ok(Err(BlobError::Truncated));
-        }
-        self.flash.read(self.start_of(slot) + CONTENT, &mut bytes)?;
-        Ok(Blob::decode(bytes.get(..length as usize).unwrap_or_default()))
+        };
+        self.flash.read(self.start_of(slot) + CONTENT, padded)?;
+        Ok(padded.get(..length as usize).map_or(Err(BlobError::Truncated), Blob::decode))
     }
 }

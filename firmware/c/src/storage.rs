@@ -1,12 +1,13 @@
 //! A controller in storage that its user owns.
 
 use crate::status::GrnStatus;
+use core::mem::MaybeUninit;
 use grn_core::blob::{Blob, Identity};
 use grn_core::robot::{Command, Controller, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
-/// The size of a GrnController in units of 8 bytes.
-pub const GRN_CONTROLLER_WORDS: usize = 256;
+/// The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
+pub const GRN_CONTROLLER_WORDS: usize = 255;
 
 /// What a controller computes with. Both follow the same law; each gives the same bits on every machine.
 #[repr(i32)]
@@ -24,19 +25,15 @@ pub enum GrnNumber {
 /// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
 #[repr(C)]
 pub struct GrnController {
-    opaque: [u64; GRN_CONTROLLER_WORDS],
-}
-
-/// What is in the storage of a loaded controller.
-#[repr(C)]
-struct Slot<S> {
+    /// What is loaded; 0 for nothing. Written by the library only, as all of the storage.
     magic: u64,
-    controller: Controller<S>,
+    /// The controller, if one is loaded.
+    opaque: [MaybeUninit<u64>; GRN_CONTROLLER_WORDS],
 }
 
 /// A number type that controllers are loaded in.
 pub trait Number: Scalar {
-    /// The first word of a controller that was loaded in it.
+    /// What tells that the controller that is loaded computes with it.
     const MAGIC: u64;
 }
 
@@ -48,53 +45,44 @@ impl Number for Q8_24 {
     const MAGIC: u64 = u64::from_le_bytes(*b"grn 8.24");
 }
 
-impl<S> Slot<S> {
-    /// A slot fits into the storage.
-    const FITS: () = {
-        assert!(size_of::<Self>() <= size_of::<GrnController>(), "raise GRN_CONTROLLER_WORDS");
-        assert!(align_of::<Self>() <= align_of::<GrnController>(), "GrnController needs more alignment");
-    };
-}
-
 impl Default for GrnController {
     fn default() -> Self {
-        GrnController { opaque: [0; GRN_CONTROLLER_WORDS] }
+        GrnController { magic: 0, opaque: [MaybeUninit::zeroed(); GRN_CONTROLLER_WORDS] }
     }
 }
 
 impl GrnController {
     /// From now on no controller is loaded.
     pub(crate) fn vacate(&mut self) {
-        let [magic, ..] = &mut self.opaque;
-        *magic = 0;
+        self.magic = 0;
     }
 
     /// From now on this one is.
     pub(crate) fn fill<S: Number>(&mut self, controller: Controller<S>) {
-        const { Slot::<S>::FITS };
-        let slot = (&raw mut self.opaque).cast::<Slot<S>>();
-        // SAFETY: a slot fits in size and alignment, and `self` is borrowed exclusively. The fields one by one, so that
-        // the controller, large on the chip's stack, is copied once.
-        unsafe {
-            (&raw mut (*slot).controller).write(controller);
-            (&raw mut (*slot).magic).write(S::MAGIC);
+        const {
+            assert!(
+                size_of::<Controller<S>>() <= GRN_CONTROLLER_WORDS * size_of::<u64>(),
+                "raise GRN_CONTROLLER_WORDS"
+            );
+            assert!(align_of::<Controller<S>>() <= align_of::<u64>(), "a controller needs more alignment");
         }
+        // SAFETY: a controller fits in size and alignment, and `self` is borrowed exclusively.
+        unsafe { (&raw mut self.opaque).cast::<Controller<S>>().write(controller) };
+        self.magic = S::MAGIC;
     }
 
-    /// The controller that is loaded, if it is in this number type.
+    /// The controller that is loaded, if it computes with this number type.
     pub(crate) fn get<S: Number>(&self) -> Option<&Controller<S>> {
-        let [magic, ..] = self.opaque;
-        let slot = (&raw const self.opaque).cast::<Slot<S>>();
-        // SAFETY: where this magic is, `fill` has written such a slot.
-        (magic == S::MAGIC).then(|| unsafe { &(*slot).controller })
+        let controller = (&raw const self.opaque).cast::<Controller<S>>();
+        // SAFETY: with this magic `fill` has written such a controller.
+        (self.magic == S::MAGIC).then(|| unsafe { &*controller })
     }
 
     /// The same, to be ticked.
     pub(crate) fn get_mut<S: Number>(&mut self) -> Option<&mut Controller<S>> {
-        let [magic, ..] = self.opaque;
-        let slot = (&raw mut self.opaque).cast::<Slot<S>>();
-        // SAFETY: where this magic is, `fill` has written such a slot, and `self` is borrowed exclusively.
-        (magic == S::MAGIC).then(|| unsafe { &mut (*slot).controller })
+        let controller = (&raw mut self.opaque).cast::<Controller<S>>();
+        // SAFETY: with this magic `fill` has written such a controller, and `self` is borrowed exclusively.
+        (self.magic == S::MAGIC).then(|| unsafe { &mut *controller })
     }
 
     pub(crate) fn tick(&mut self, percept: &Percept) -> Result<Command, GrnStatus> {

@@ -9,9 +9,9 @@
 //     status = grn_tick(&controller, &percept, &command);   // every 1/32 s; then set the wheels to command
 //
 // The library allocates nothing and keeps no state of its own; equal blobs and percepts give equal commands, bit for bit,
-// on every machine. A pointer may be null or misaligned: the call then returns a status and does nothing. A pointer that
-// is neither points to a whole object, which nobody else uses during the call; so one controller is used by one thread at
-// a time, while different controllers know nothing of each other.
+// on every machine. A pointer that is null or misaligned is refused with a status. A pointer that is neither must point
+// to a whole object, which nobody else uses during the call: one controller is for one thread at a time, while different
+// controllers know nothing of each other.
 //
 // The world is right-handed, x east, y north.
 

@@ -1,5 +1,6 @@
 //! What a person would otherwise type by hand. `cargo xtask` without arguments says what there is.
 
+mod c_examples;
 mod tally;
 
 use std::env;
@@ -10,6 +11,8 @@ const HELP: &str = "cargo xtask TASK
 
   test   build everything and run all tests; ends with a line that counts them
   bench  run the benchmarks (criterion); figures on standard output
+  c      test the C library and its examples, on this machine and on an emulated chip;
+         with --bless its header and the examples' expected output are written anew
   bless  write the golden files anew: models/*.grn (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
@@ -24,6 +27,7 @@ fn main() -> ExitCode {
         "test" => test(),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
+        "c" => c_library(env::args().any(|argument| argument == "--bless")),
         "reproduce" => reproduce(),
         "fuzz" => fuzz(),
         "" | "help" | "--help" | "-h" => {
@@ -64,6 +68,20 @@ fn test() -> bool {
     let all = succeeded.into_iter().all(|success| success);
     println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed.max(usize::from(!all)), tally.ignored);
     all && tally.failed == 0 && tally.passed > 0
+}
+
+/// The C library's own tests, then its examples.
+fn c_library(bless: bool) -> bool {
+    let mut tally = Tally::default();
+    let mut tests = this_cargo();
+    tests.args(["test", "--manifest-path", "firmware/Cargo.toml", "--package", "grn-c", "--no-fail-fast"]);
+    if bless {
+        tests.env("GRN_BLESS", "1");
+    }
+    let succeeded = tally.follow(&mut tests);
+    let examples = c_examples::check();
+    println!("{} passed, {} failed", tally.passed + examples.passed, tally.failed + examples.failed);
+    succeeded && examples.failed == 0
 }
 
 fn reproduce() -> bool {

@@ -18,6 +18,8 @@
 //! | [`swarm`] | the world in motion |
 //! | [`trace`] | a recorded run |
 //! | [`metrics`] | what a recorded run is worth |
+//! | [`flash`] | a robot's flash, with power loss |
+//! | [`link`] | the host's side of the link to a robot, real or simulated |
 //!
 //! Results are the same bits on every machine: single-threaded, seeded, and without the platform's transcendental
 //! functions.
@@ -26,8 +28,10 @@ pub mod body;
 pub mod brain;
 pub mod config;
 pub mod contacts;
+pub mod flash;
 pub mod geometry;
 pub mod grid;
+pub mod link;
 pub mod metrics;
 pub mod radio;
 pub mod random;

@@ -18,6 +18,10 @@ pub enum Component {
     Radio = 4,
     /// Where random obstacles lie.
     Obstacles = 5,
+    /// What power loss leaves in a flash.
+    Flash = 6,
+    /// What happens to bytes on a wire.
+    Wire = 7,
 }
 
 /// A stream of random numbers (PCG XSH-RR 64/32).

@@ -12,7 +12,7 @@
 //! | [`field`](mod@field) | targets and obstacles → morphogens (x1, x2) and their gradients |
 //! | [`pattern`] | level, inside test, nearest candidate point |
 //! | [`blob`] | the flashed file: checked, canonical, self-describing |
-//! | [`robot`] | percept → controller → wheel command; radio messages |
+//! | [`robot`] | percept → controller → wheel command; radio messages; the link to a host; slots for blobs |
 //!
 //! Results are the same bits on every machine: only IEEE-754 basic operations, integer arithmetic and the `libm` crate are
 //! used, never a platform's transcendental functions or fused operations.
@@ -24,6 +24,7 @@
 extern crate std;
 
 pub mod blob;
+mod bounded;
 pub mod dynamics;
 pub mod field;
 pub mod geometry;

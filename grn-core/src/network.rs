@@ -1,5 +1,6 @@
 //! A feed-forward network of genes, validated once and then safe to evaluate.
 
+use crate::bounded::filled;
 use crate::motif::{MAX_INPUTS, Motif};
 use crate::scalar::{Arithmetic, Scalar};
 use core::fmt;
@@ -208,7 +209,7 @@ impl<const N: usize> Network<f32, N> {
             inputs: gene.inputs.clone(),
             theta: S::from_f32(gene.theta),
         });
-        Network { genes: genes.collect(), steepness: S::from_f32(self.steepness) }
+        Network { genes: filled(genes), steepness: S::from_f32(self.steepness) }
     }
 }
 

@@ -3,3 +3,4 @@
 pub mod decoder;
 pub mod golden;
 pub mod reproduction;
+pub mod robots;

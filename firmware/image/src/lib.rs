@@ -10,6 +10,8 @@
 pub mod board;
 #[allow(unsafe_code, reason = "a function that does not exist is declared and called")]
 mod panic;
+#[cfg(target_abi = "eabihf")]
+pub mod robot;
 
 /// Makes a function the image's entry: `fn() -> u8` ends the emulation with its exit code, `fn() -> !` never ends.
 #[macro_export]

@@ -1,6 +1,7 @@
 //! The payload's shape on the wire, and the way between it and [`Blob`].
 
 use super::{Blob, BlobError, CONVENTION, FieldParameters, Gains, Identity};
+use crate::bounded::filled;
 use crate::dynamics::Step;
 use crate::field::Kernel;
 use crate::motif::{MAX_INPUTS, Motif};
@@ -61,12 +62,12 @@ impl<const N: usize> Payload<N> {
     pub(super) fn of(blob: &Blob<N>) -> Self {
         let genes = blob.network.genes().iter().map(|gene| WireGene {
             opcode: gene.motif.opcode(),
-            inputs: gene.inputs.iter().map(|input| input.code()).collect(),
+            inputs: filled(gene.inputs.iter().map(|input| input.code())),
             theta: gene.theta,
         });
         Payload {
             convention: CONVENTION,
-            genes: genes.collect(),
+            genes: filled(genes),
             steepness: blob.network.steepness(),
             kernel: blob.field.kernel as u8,
             target_width: blob.field.target_width,
@@ -92,13 +93,13 @@ impl<const N: usize> Payload<N> {
             let fault = BlobError::Opcode { gene: index, opcode: gene.opcode };
             let gene = Gene {
                 motif: Motif::from_opcode(gene.opcode).ok_or(fault)?,
-                inputs: gene.inputs.iter().map(|&code| Source::from_code(code)).collect(),
+                inputs: filled(gene.inputs.iter().map(|&code| Source::from_code(code))),
                 theta: gene.theta,
             };
             genes.push(gene).map_err(|_| BlobError::Malformed)?;
         }
         let blob = Blob {
-            network: Network::new(self.steepness, genes).map_err(BlobError::Network)?,
+            network: Network::new(self.steepness, genes.iter().cloned()).map_err(BlobError::Network)?,
             field: FieldParameters {
                 kernel: Kernel::from_code(self.kernel).ok_or(BlobError::Kernel(self.kernel))?,
                 target_width: self.target_width,

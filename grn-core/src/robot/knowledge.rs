@@ -4,6 +4,7 @@ use super::epuck2::TICKS_PER_SECOND;
 use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::obstacles::{KnownObstacle, ObstacleMap};
 use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
+use crate::bounded::filled;
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
 use heapless::Vec;
@@ -202,18 +203,12 @@ impl<S: Scalar> Knowledge<S> {
         let turns = (0..MAX_REPORTED_OBSTACLES as u32).map(|k| first.wrapping_add(k));
         let obstacles = if percept.obstacles.is_empty() {
             let count = self.obstacles.known().len();
-            turns
-                .take(count)
-                .filter_map(|turn| nth_in_turn(self.obstacles.known(), turn))
-                .map(|known| ObstacleReport { position: known.position, age: known.age })
-                .collect()
+            let known = turns.take(count).filter_map(|turn| nth_in_turn(self.obstacles.known(), turn));
+            filled(known.map(|known| ObstacleReport { position: known.position, age: known.age }))
         } else {
             let count = percept.obstacles.len();
-            turns
-                .take(count)
-                .filter_map(|turn| nth_in_turn(&percept.obstacles, turn))
-                .map(|&position| ObstacleReport { position, age: 0 })
-                .collect()
+            let seen = turns.take(count).filter_map(|turn| nth_in_turn(&percept.obstacles, turn));
+            filled(seen.map(|&position| ObstacleReport { position, age: 0 }))
         };
         (target, obstacles)
     }

@@ -1,4 +1,5 @@
-//! The robot: percept → controller → wheel command, and the radio messages between robots.
+//! The robot: percept → controller → wheel command, the radio messages between robots, the link to a host, and the slots
+//! that blobs are flashed to.
 //!
 //! Everything that crosses the controller's border is made of integers in stated units, so that a percept can be
 //! recorded, sent over a wire and replayed bit for bit, and a robot without a floating-point unit needs none.
@@ -7,10 +8,12 @@ pub mod controller;
 mod drive;
 pub mod epuck2;
 mod knowledge;
+pub mod link;
 pub mod message;
 mod motion;
 mod obstacles;
 pub mod percept;
+pub mod slots;
 
 pub use controller::{Controller, LoadError};
 pub use message::{Message, ObstacleReport, TargetReport};

@@ -3,6 +3,7 @@
 
 use super::knowledge::{largest_of, metres, squared_distance};
 use super::percept::Millimetres;
+use crate::bounded::filled;
 use crate::geometry::Point;
 use crate::scalar::Scalar;
 use heapless::Vec;
@@ -129,7 +130,7 @@ impl<S: Scalar> ObstacleMap<S> {
         let nearest = squares().min().unwrap_or(0);
         let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
         let near = self.known.iter().zip(squares()).filter(|&(_, square)| square <= limit);
-        self.near = near.map(|(known, _)| metres(known.position)).collect();
+        self.near = filled(near.map(|(known, _)| metres(known.position)));
     }
 }
 

@@ -4,7 +4,9 @@ mod campaign;
 mod draw;
 mod eval;
 mod evolve;
+mod flash;
 mod interrupt;
+mod robots;
 mod scatter;
 mod show;
 mod simulate;
@@ -36,6 +38,10 @@ enum Command {
     Scatter(scatter::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
     Show(show::Arguments),
+    /// Bring a blob onto a robot, or write it for a programmer.
+    Flash(flash::Arguments),
+    /// List the robots that answer on the given ports.
+    Robots(robots::Arguments),
     /// Read `x1,x2` lines from standard input and print the steady state M of each.
     Eval(eval::Arguments),
     /// Draw a blob's pattern at each snapshot of a scenario.
@@ -73,6 +79,8 @@ pub fn run() -> ExitCode {
         Command::Campaign(arguments) => campaign::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Scatter(arguments) => scatter::run(&arguments),
+        Command::Flash(arguments) => flash::run(&arguments),
+        Command::Robots(arguments) => robots::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Draw(arguments) => draw::run(&arguments),

@@ -11,6 +11,8 @@ pub use cortex_m::stack_used;
 mod netduinoplus2;
 #[cfg(target_abi = "eabihf")]
 pub use netduinoplus2::{counter, uart};
+#[cfg(target_abi = "eabihf")]
+pub mod slots;
 
 mod semihosting;
 pub use semihosting::{exit, print};

@@ -1,0 +1,32 @@
+//! Processor in the loop: a robot's controller on another machine, asked through the link.
+
+use super::client::{Client, LinkError};
+use super::flashing;
+use super::wire::Wire;
+use crate::brain::{Brain, BrainError};
+use grn_core::blob::Identity;
+use grn_core::robot::link::message::Reset;
+use grn_core::robot::{Command, Percept};
+
+/// A controller behind a link.
+pub struct RemoteBrain<W> {
+    client: Client<W>,
+}
+
+impl<W: Wire> RemoteBrain<W> {
+    /// Puts a blob in charge of the robot and begins anew as robot `number` of its swarm.
+    ///
+    /// # Errors
+    /// [`LinkError`].
+    pub fn start(mut client: Client<W>, blob: &[u8], identity: Identity, number: u8) -> Result<Self, LinkError> {
+        flashing::flash(&mut client, blob, identity, false, |_| {})?;
+        client.ask(&Reset { robot: number })?;
+        Ok(RemoteBrain { client })
+    }
+}
+
+impl<W: Wire> Brain for RemoteBrain<W> {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        self.client.ask(percept).map_err(|error| BrainError::new(error.to_string()))
+    }
+}

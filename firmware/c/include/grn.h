@@ -1,0 +1,288 @@
+// The grn controller as a C library. Made from the Rust sources by cbindgen: do not edit.
+//
+// A robot loads a blob (a file that `grn evolve` wrote) into storage of its own and then ticks 32 times a second:
+//
+//     static GrnController controller;
+//     GrnStatus status = grn_load(&controller, sizeof controller, blob, length, GRN_NUMBER_F32, robot);
+//     if (status != GRN_STATUS_OK) puts(grn_status_text(status));
+//     ...
+//     status = grn_tick(&controller, &percept, &command);   // every 1/32 s; then set the wheels to command
+//
+// The library allocates nothing and keeps no state of its own; equal blobs and percepts give equal commands, bit for bit,
+// on every machine. A pointer may be null or misaligned: the call then returns a status and does nothing. A pointer that
+// is neither points to a whole object, which nobody else uses during the call; so one controller is used by one thread at
+// a time, while different controllers know nothing of each other.
+//
+// The world is right-handed, x east, y north.
+
+#ifndef GRN_H
+#define GRN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The size of a GrnController in units of 8 bytes.
+#define GRN_CONTROLLER_WORDS 256
+
+// How often grn_tick is to be called.
+#define GRN_TICKS_PER_SECOND 32
+
+// How many proximity sensors the ring has.
+#define GRN_PROXIMITY_SENSORS 8
+
+// The most targets in a percept.
+#define GRN_MAX_TARGETS 4
+
+// The most obstacle points in a percept.
+#define GRN_MAX_SEEN_OBSTACLES 8
+
+// The most messages in a percept.
+#define GRN_MAX_HEARD 8
+
+// The most obstacle points in a message.
+#define GRN_MAX_REPORTED_OBSTACLES 4
+
+// The bytes of a blob's identity.
+#define GRN_IDENTITY_BYTES 8
+
+// What became of a call. The numbers of released statuses never change; grn_status_text says what to do.
+enum GrnStatus
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Done.
+    GRN_STATUS_OK = 0,
+    // A pointer is null.
+    GRN_STATUS_NULL_POINTER = 1,
+    // A pointer is not aligned for what it points to.
+    GRN_STATUS_MISALIGNED = 2,
+    // The storage is smaller than this library's GrnController.
+    GRN_STATUS_STORAGE_TOO_SMALL = 3,
+    // No controller is loaded in this storage.
+    GRN_STATUS_NOT_LOADED = 4,
+    // The number type is none of GrnNumber.
+    GRN_STATUS_UNKNOWN_NUMBER = 5,
+    // The percept counts more than GRN_MAX_TARGETS targets.
+    GRN_STATUS_TOO_MANY_TARGETS = 10,
+    // The percept counts more than GRN_MAX_SEEN_OBSTACLES obstacle points.
+    GRN_STATUS_TOO_MANY_OBSTACLES = 11,
+    // The percept counts more than GRN_MAX_HEARD messages.
+    GRN_STATUS_TOO_MANY_HEARD = 12,
+    // A message counts more than GRN_MAX_REPORTED_OBSTACLES obstacle points.
+    GRN_STATUS_TOO_MANY_REPORTED = 13,
+    // The bytes end before the blob's header does.
+    GRN_STATUS_BLOB_TRUNCATED = 20,
+    // The bytes do not begin as a blob does.
+    GRN_STATUS_NOT_A_BLOB = 21,
+    // The blob has an older format version than this library reads.
+    GRN_STATUS_BLOB_TOO_OLD = 22,
+    // The blob has a newer format version than this library reads.
+    GRN_STATUS_BLOB_TOO_NEW = 23,
+    // There are more or fewer bytes than the blob's header says.
+    GRN_STATUS_BLOB_LENGTH = 24,
+    // The blob's checksum or identity is not that of its content.
+    GRN_STATUS_BLOB_DAMAGED = 25,
+    // The blob has another convention for frame, units and normalisation.
+    GRN_STATUS_BLOB_CONVENTION = 26,
+    // The blob's content is not, byte for byte, what a writer of this format writes.
+    GRN_STATUS_BLOB_MALFORMED = 27,
+    // The blob's network has more genes than this build holds.
+    GRN_STATUS_NETWORK_TOO_LARGE = 28,
+    // A gene, a code or a parameter in the blob is out of its range.
+    GRN_STATUS_BLOB_OUT_OF_RANGE = 29,
+    // The model does not tell targets from empty space.
+    GRN_STATUS_NO_PATTERN = 40,
+    // The model's pattern does not close around a lone target.
+    GRN_STATUS_NO_RING = 41,
+    // Time scale and integration step do not give a whole number of steps in a tick, or too many.
+    GRN_STATUS_STEPS_PER_TICK = 42,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum GrnStatus GrnStatus;
+#else
+typedef int32_t GrnStatus;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What a controller computes with. Both follow the same law; each gives the same bits on every machine.
+enum GrnNumber
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Single-precision floating point.
+    GRN_NUMBER_F32 = 1,
+    // Fixed point with 24 fractional bits, for processors without a floating-point unit.
+    GRN_NUMBER_Q8_24 = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum GrnNumber GrnNumber;
+#else
+typedef int32_t GrnNumber;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Storage for one controller, owned by the caller: 2048 bytes, 8-aligned.
+//
+// To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
+// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
+typedef struct GrnController {
+    uint64_t opaque[GRN_CONTROLLER_WORDS];
+} GrnController;
+
+// A position in the world, millimetres, within 32767 either way.
+typedef struct GrnMillimetres {
+    // East.
+    int16_t x;
+    // North.
+    int16_t y;
+} GrnMillimetres;
+
+// A target seen with the robot's own sensors.
+typedef struct GrnSighting {
+    // Which target: targets can be told apart.
+    uint8_t target;
+    // Where it is.
+    struct GrnMillimetres position;
+} GrnSighting;
+
+// A target as somebody knows it.
+typedef struct GrnTargetReport {
+    // Which target.
+    uint8_t target;
+    // Where the sender expects it at the time of sending.
+    struct GrnMillimetres position;
+    // Its velocity, millimetres per second: east, north.
+    int8_t velocity[2];
+    // Ticks since it was seen, over all relays; 255 means at least that.
+    uint8_t age;
+} GrnTargetReport;
+
+// An obstacle point as somebody knows it.
+typedef struct GrnObstacleReport {
+    // A point on the obstacle's boundary.
+    struct GrnMillimetres position;
+    // Units of 8 ticks since it was seen, over all relays; 255 means at least that.
+    uint8_t age;
+} GrnObstacleReport;
+
+// What robots tell each other by radio: who and where I am, and some of what I know.
+//
+// The layout is the same on all machines of equal byte order, so the bytes may be sent as they are.
+typedef struct GrnMessage {
+    // Number of the robot that sends, unique in the swarm.
+    uint8_t sender;
+    // Where it is.
+    struct GrnMillimetres position;
+    // 0 if it tells of no target; then "target" is not read.
+    uint8_t has_target;
+    // One of the targets it knows, in turn.
+    struct GrnTargetReport target;
+    // How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
+    uint8_t obstacle_count;
+    // Some of the obstacle points it knows, in turn.
+    struct GrnObstacleReport obstacles[GRN_MAX_REPORTED_OBSTACLES];
+} GrnMessage;
+
+// Everything a robot perceives in one tick.
+typedef struct GrnPercept {
+    // Own position in the world, micrometres: east, north.
+    int32_t position[2];
+    // Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north.
+    int16_t heading[2];
+    // Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
+    // nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
+    uint16_t proximity[GRN_PROXIMITY_SENSORS];
+    // How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
+    uint8_t target_count;
+    // Targets seen with own sensors (mother robots).
+    struct GrnSighting targets[GRN_MAX_TARGETS];
+    // How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
+    uint8_t obstacle_count;
+    // Points on obstacles seen with own sensors (mother robots).
+    struct GrnMillimetres obstacles[GRN_MAX_SEEN_OBSTACLES];
+    // How many of "heard" there are, from 0 to GRN_MAX_HEARD.
+    uint8_t heard_count;
+    // Messages received since the last tick; of more, the strongest.
+    struct GrnMessage heard[GRN_MAX_HEARD];
+} GrnPercept;
+
+// What a robot does until the next tick.
+typedef struct GrnCommand {
+    // Left wheel, motor steps per second (0.1288 mm each), forward positive, within 1100 either way.
+    int16_t left;
+    // Right wheel, likewise.
+    int16_t right;
+    // 1 if there is a message to broadcast in this tick, else 0.
+    uint8_t has_broadcast;
+    // The message; all zero without one.
+    struct GrnMessage broadcast;
+} GrnCommand;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// Loads a blob into a controller, all genes silent and nothing known.
+//
+// `controller`: the storage; whatever it holds is overwritten.
+// `controller_size`: sizeof(GrnController), which tells whether this header fits the library.
+// `blob`, `length`: the bytes of the blob, for example a file or a place in flash; they are not needed any more after
+// the call.
+// `number`: what to compute with, a GrnNumber.
+// `robot`: this robot's number, unique in the swarm.
+//
+// Returns GRN_STATUS_OK, or why the blob is refused; the storage then holds no controller and grn_tick refuses it.
+GrnStatus grn_load(struct GrnController *controller,
+                   size_t controller_size,
+                   const uint8_t *blob,
+                   size_t length,
+                   int32_t number,
+                   uint8_t robot);
+
+// Says what grn_load would say about a blob, without storage: for example before it is kept in flash.
+//
+// `blob`, `length`, `number`: as for grn_load.
+//
+// Takes about as much stack as grn_load.
+GrnStatus grn_check(const uint8_t *blob, size_t length, int32_t number);
+
+// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second.
+//
+// `percept`: what the robot perceives; entries beyond a count are not read.
+// `command`: receives what the robot does until the next tick.
+//
+// Returns GRN_STATUS_OK, or what is wrong; the controller is then as before, and `command`, if it is a pointer to one,
+// stops the wheels and sends nothing.
+GrnStatus grn_tick(struct GrnController *controller, const struct GrnPercept *percept, struct GrnCommand *command);
+
+// The level of the pattern morphogen M at the robot, as its genes express it now: a number from 0 to 1, 0 before the
+// first target is known.
+//
+// `morphogen`: receives it, without loss for both number types.
+GrnStatus grn_morphogen(const struct GrnController *controller, float *morphogen);
+
+// The identity of the blob that runs: the first 8 bytes of the SHA-256 of its payload, which `grn show` prints.
+//
+// `identity`: receives GRN_IDENTITY_BYTES bytes.
+GrnStatus grn_identity(const struct GrnController *controller, uint8_t *identity);
+
+// What a status means and what to do about it: one line in English, ASCII, without a line end; never null.
+//
+// `status`: a GrnStatus; another number has a text that says so.
+const char *grn_status_text(int32_t status);
+
+// The version of this library, like "0.1.0"; never null.
+const char *grn_version(void);
+
+// The format version of the blobs this library reads.
+uint8_t grn_blob_format_version(void);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* GRN_H */

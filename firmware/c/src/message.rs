@@ -1,0 +1,250 @@
+//! Percept, command and message as C has them.
+
+use crate::status::GrnStatus;
+use grn_core::robot::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
+use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
+use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS};
+use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use heapless::Vec;
+
+/// How often grn_tick is to be called.
+pub const GRN_TICKS_PER_SECOND: usize = 32;
+/// How many proximity sensors the ring has.
+pub const GRN_PROXIMITY_SENSORS: usize = 8;
+/// The most targets in a percept.
+pub const GRN_MAX_TARGETS: usize = 4;
+/// The most obstacle points in a percept.
+pub const GRN_MAX_SEEN_OBSTACLES: usize = 8;
+/// The most messages in a percept.
+pub const GRN_MAX_HEARD: usize = 8;
+/// The most obstacle points in a message.
+pub const GRN_MAX_REPORTED_OBSTACLES: usize = 4;
+/// The bytes of a blob's identity.
+pub const GRN_IDENTITY_BYTES: usize = 8;
+
+// Numbers in the header, because cbindgen does not look into other crates; held to those of the core.
+const _: () = assert!(GRN_TICKS_PER_SECOND == TICKS_PER_SECOND as usize);
+const _: () = assert!(GRN_PROXIMITY_SENSORS == PROXIMITY_SENSORS);
+const _: () = assert!(GRN_MAX_TARGETS == MAX_TARGETS);
+const _: () = assert!(GRN_MAX_SEEN_OBSTACLES == MAX_SEEN_OBSTACLES);
+const _: () = assert!(GRN_MAX_HEARD == MAX_HEARD);
+const _: () = assert!(GRN_MAX_REPORTED_OBSTACLES == MAX_REPORTED_OBSTACLES);
+
+/// A position in the world, millimetres, within 32767 either way.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnMillimetres {
+    /// East.
+    pub x: i16,
+    /// North.
+    pub y: i16,
+}
+
+/// A target seen with the robot's own sensors.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnSighting {
+    /// Which target: targets can be told apart.
+    pub target: u8,
+    /// Where it is.
+    pub position: GrnMillimetres,
+}
+
+/// A target as somebody knows it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnTargetReport {
+    /// Which target.
+    pub target: u8,
+    /// Where the sender expects it at the time of sending.
+    pub position: GrnMillimetres,
+    /// Its velocity, millimetres per second: east, north.
+    pub velocity: [i8; 2],
+    /// Ticks since it was seen, over all relays; 255 means at least that.
+    pub age: u8,
+}
+
+/// An obstacle point as somebody knows it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnObstacleReport {
+    /// A point on the obstacle's boundary.
+    pub position: GrnMillimetres,
+    /// Units of 8 ticks since it was seen, over all relays; 255 means at least that.
+    pub age: u8,
+}
+
+/// What robots tell each other by radio: who and where I am, and some of what I know.
+///
+/// The layout is the same on all machines of equal byte order, so the bytes may be sent as they are.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnMessage {
+    /// Number of the robot that sends, unique in the swarm.
+    pub sender: u8,
+    /// Where it is.
+    pub position: GrnMillimetres,
+    /// 0 if it tells of no target; then "target" is not read.
+    pub has_target: u8,
+    /// One of the targets it knows, in turn.
+    pub target: GrnTargetReport,
+    /// How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
+    pub obstacle_count: u8,
+    /// Some of the obstacle points it knows, in turn.
+    pub obstacles: [GrnObstacleReport; GRN_MAX_REPORTED_OBSTACLES],
+}
+
+/// Everything a robot perceives in one tick.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnPercept {
+    /// Own position in the world, micrometres: east, north.
+    pub position: [i32; 2],
+    /// Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north.
+    pub heading: [i16; 2],
+    /// Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
+    /// nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
+    pub proximity: [u16; GRN_PROXIMITY_SENSORS],
+    /// How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
+    pub target_count: u8,
+    /// Targets seen with own sensors (mother robots).
+    pub targets: [GrnSighting; GRN_MAX_TARGETS],
+    /// How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
+    pub obstacle_count: u8,
+    /// Points on obstacles seen with own sensors (mother robots).
+    pub obstacles: [GrnMillimetres; GRN_MAX_SEEN_OBSTACLES],
+    /// How many of "heard" there are, from 0 to GRN_MAX_HEARD.
+    pub heard_count: u8,
+    /// Messages received since the last tick; of more, the strongest.
+    pub heard: [GrnMessage; GRN_MAX_HEARD],
+}
+
+/// What a robot does until the next tick.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnCommand {
+    /// Left wheel, motor steps per second (0.1288 mm each), forward positive, within 1100 either way.
+    pub left: i16,
+    /// Right wheel, likewise.
+    pub right: i16,
+    /// 1 if there is a message to broadcast in this tick, else 0.
+    pub has_broadcast: u8,
+    /// The message; all zero without one.
+    pub broadcast: GrnMessage,
+}
+
+impl From<GrnMillimetres> for Millimetres {
+    fn from(GrnMillimetres { x, y }: GrnMillimetres) -> Self {
+        Millimetres { x, y }
+    }
+}
+
+impl From<Millimetres> for GrnMillimetres {
+    fn from(Millimetres { x, y }: Millimetres) -> Self {
+        GrnMillimetres { x, y }
+    }
+}
+
+impl From<GrnSighting> for Sighting {
+    fn from(GrnSighting { target, position }: GrnSighting) -> Self {
+        Sighting { target, position: position.into() }
+    }
+}
+
+impl From<GrnTargetReport> for TargetReport {
+    fn from(GrnTargetReport { target, position, velocity, age }: GrnTargetReport) -> Self {
+        TargetReport { target, position: position.into(), velocity, age }
+    }
+}
+
+impl From<TargetReport> for GrnTargetReport {
+    fn from(TargetReport { target, position, velocity, age }: TargetReport) -> Self {
+        GrnTargetReport { target, position: position.into(), velocity, age }
+    }
+}
+
+impl From<GrnObstacleReport> for ObstacleReport {
+    fn from(GrnObstacleReport { position, age }: GrnObstacleReport) -> Self {
+        ObstacleReport { position: position.into(), age }
+    }
+}
+
+impl From<ObstacleReport> for GrnObstacleReport {
+    fn from(ObstacleReport { position, age }: ObstacleReport) -> Self {
+        GrnObstacleReport { position: position.into(), age }
+    }
+}
+
+impl TryFrom<&GrnMessage> for Message {
+    type Error = GrnStatus;
+
+    fn try_from(message: &GrnMessage) -> Result<Self, GrnStatus> {
+        let reported = counted(&message.obstacles, message.obstacle_count).ok_or(GrnStatus::TooManyReported)?;
+        Ok(Message {
+            sender: message.sender,
+            position: message.position.into(),
+            target: (message.has_target != 0).then(|| message.target.into()),
+            obstacles: collected(reported, |&report| Ok(report.into()))?,
+        })
+    }
+}
+
+impl From<Message> for GrnMessage {
+    fn from(message: Message) -> Self {
+        let mut obstacles = [GrnObstacleReport::default(); GRN_MAX_REPORTED_OBSTACLES];
+        for (slot, report) in obstacles.iter_mut().zip(&message.obstacles) {
+            *slot = (*report).into();
+        }
+        GrnMessage {
+            sender: message.sender,
+            position: message.position.into(),
+            has_target: message.target.is_some().into(),
+            target: message.target.map(Into::into).unwrap_or_default(),
+            obstacle_count: message.obstacles.len() as u8,
+            obstacles,
+        }
+    }
+}
+
+impl TryFrom<&GrnPercept> for Percept {
+    type Error = GrnStatus;
+
+    fn try_from(percept: &GrnPercept) -> Result<Self, GrnStatus> {
+        let targets = counted(&percept.targets, percept.target_count).ok_or(GrnStatus::TooManyTargets)?;
+        let obstacles = counted(&percept.obstacles, percept.obstacle_count).ok_or(GrnStatus::TooManyObstacles)?;
+        let heard = counted(&percept.heard, percept.heard_count).ok_or(GrnStatus::TooManyHeard)?;
+        Ok(Percept {
+            position: percept.position,
+            heading: percept.heading,
+            proximity: percept.proximity,
+            targets: collected(targets, |&target| Ok(target.into()))?,
+            obstacles: collected(obstacles, |&point| Ok(point.into()))?,
+            heard: collected(heard, |message| message.try_into())?,
+        })
+    }
+}
+
+impl From<Command> for GrnCommand {
+    fn from(Command { left, right, broadcast }: Command) -> Self {
+        let has_broadcast = broadcast.is_some().into();
+        GrnCommand { left, right, has_broadcast, broadcast: broadcast.map(Into::into).unwrap_or_default() }
+    }
+}
+
+/// The first `count` items, if there are so many.
+fn counted<T>(items: &[T], count: u8) -> Option<&[T]> {
+    items.get(..usize::from(count))
+}
+
+/// The items converted; `N` is no smaller than their number.
+fn collected<C, T, const N: usize>(
+    items: &[C],
+    convert: impl Fn(&C) -> Result<T, GrnStatus>,
+) -> Result<Vec<T, N>, GrnStatus> {
+    let mut converted = Vec::new();
+    for item in items.iter().take(N) {
+        // Never full: `take` sees to it.
+        let _ = converted.push(convert(item)?);
+    }
+    Ok(converted)
+}

@@ -1,0 +1,14 @@
+//! A robot that computes in f32.
+#![no_std]
+#![no_main]
+
+use grn_core::robot::link::message::Arithmetic;
+use grn_firmware::{board::slots::SlotMemory, robot};
+
+grn_firmware::entry!(main);
+
+fn main() -> u8 {
+    // SAFETY: this is the only one.
+    let slots = unsafe { SlotMemory::take() };
+    robot::serve::<f32>(Arithmetic::F32, slots)
+}

@@ -1,0 +1,15 @@
+//! A robot that computes in Q8.24.
+#![no_std]
+#![no_main]
+
+use grn_core::robot::link::message::Arithmetic;
+use grn_core::scalar::Q8_24;
+use grn_firmware::{board::slots::SlotMemory, robot};
+
+grn_firmware::entry!(main);
+
+fn main() -> u8 {
+    // SAFETY: this is the only one.
+    let slots = unsafe { SlotMemory::take() };
+    robot::serve::<Q8_24>(Arithmetic::Q8_24, slots)
+}

@@ -1,0 +1,17 @@
+//! The link between a host and a robot: requests and responses in frames over a serial line.
+//!
+//! | layer | module | what it does |
+//! |---|---|---|
+//! | 1 | [`frame`] | COBS and CRC: bytes ↔ frames, in step again after any garbage |
+//! | 2 | [`message`] | frames ↔ requests, responses and refusals |
+//! | 3 | [`server`] | the robot: does what requests say, each once |
+//!
+//! The host speaks first and waits; when no response comes it sends the same frame again. Requests about blobs are the same
+//! bytes in every version of the protocol, so that a robot with old or new firmware can always be given another blob.
+
+pub mod frame;
+pub mod message;
+pub mod server;
+
+pub use message::Refusal;
+pub use server::Server;

@@ -1,0 +1,179 @@
+//! The robot's side of the link.
+
+use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
+use super::message::{
+    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, REFUSED, RESPONSE, Refusal, Request, Reset,
+    RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
+};
+use crate::blob::{Blob, FORMAT_VERSION};
+use crate::network::DEFAULT_GENES;
+use crate::robot::controller::Controller;
+use crate::robot::percept::{Command, Percept};
+use crate::robot::slots::{Layout, MAX_BLOB, SlotError, Slots};
+use crate::scalar::Scalar;
+use embedded_storage::nor_flash::NorFlash;
+use heapless::{String, Vec};
+
+/// A blob on trial is confirmed after so many ticks.
+pub const TRIAL_TICKS: u16 = 64;
+
+/// Serves one link: takes bytes, does what the requests say, gives bytes.
+///
+/// Each request is done once: when the same comes again, because its response was lost, the response is repeated.
+#[derive(Debug)]
+pub struct Server<F, S> {
+    receiver: Receiver,
+    last: Option<Done>,
+    response: Vec<u8, MAX_WIRE>,
+    robot: Robot<F, S>,
+}
+
+/// The last request that was done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Done {
+    sequence: u8,
+    crc: u32,
+}
+
+impl<F: NorFlash, S: Scalar> Server<F, S> {
+    /// A robot at its start, with the blob in charge loaded if there is one.
+    ///
+    /// # Errors
+    /// [`SlotError::Layout`], or what the flash says.
+    pub fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
+        let robot = Robot::start(flash, layout, name, arithmetic)?;
+        Ok(Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot })
+    }
+
+    /// Takes the next byte from the link. Bytes to send, if it ended a request.
+    pub fn receive(&mut self, byte: u8) -> Option<&[u8]> {
+        let frame = self.receiver.receive(byte)?;
+        if frame.operation >= RESPONSE {
+            return None;
+        }
+        let done = Done { sequence: frame.sequence, crc: frame.crc };
+        if self.last != Some(done) {
+            self.response = self.robot.respond(&frame).unwrap_or_default();
+            self.last = Some(done);
+        }
+        Some(&self.response)
+    }
+
+    /// One control tick with the robot's own percept.
+    ///
+    /// # Errors
+    /// [`Refusal::NoController`] while no blob is in charge.
+    pub fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
+        self.robot.tick(percept)
+    }
+
+    /// The flash as it is, giving up the robot.
+    pub fn into_flash(self) -> F {
+        self.robot.slots.into_flash()
+    }
+}
+
+#[derive(Debug)]
+struct Robot<F, S> {
+    slots: Slots<F>,
+    controller: Option<Controller<S>>,
+    ticks: u16,
+    number: u8,
+    name: String<24>,
+    arithmetic: Arithmetic,
+}
+
+impl<F: NorFlash, S: Scalar> Robot<F, S> {
+    fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
+        let sound = |blob: &Blob| Controller::<S>::new(blob, 0).is_ok();
+        let (slots, blob) = Slots::start(flash, layout, sound)?;
+        let controller = blob.and_then(|blob| Controller::new(&blob, 0).ok());
+        let name = String::try_from(name).unwrap_or_default();
+        Ok(Robot { slots, controller, ticks: 0, number: 0, name, arithmetic })
+    }
+
+    fn respond(&mut self, frame: &Frame<'_>) -> Result<Vec<u8, MAX_WIRE>, TooLong> {
+        match frame.operation {
+            Identify::OPERATION => answer(frame, |Identify| Ok(self.about())),
+            Status::OPERATION => answer(frame, |Status| self.status()),
+            Begin::OPERATION => answer(frame, |Begin { length, identity }| Ok(self.slots.begin(length, identity)?)),
+            Chunk::OPERATION => answer(frame, |Chunk { offset, bytes }| Ok(self.slots.chunk(offset, &bytes)?)),
+            Commit::OPERATION => answer(frame, |Commit| self.commit()),
+            Activate::OPERATION => answer(frame, |Activate { identity }| {
+                let blob = self.slots.activate(identity)?;
+                self.load(&blob)
+            }),
+            Confirm::OPERATION => answer(frame, |Confirm { identity }| Ok(self.slots.confirm(identity)?)),
+            RollBack::OPERATION => answer(frame, |RollBack { identity }| {
+                let blob = self.slots.roll_back(identity)?;
+                self.load(&blob)
+            }),
+            Reset::OPERATION => answer(frame, |Reset { robot }| self.reset(robot)),
+            Percept::OPERATION => answer(frame, |percept: Percept| self.tick(&percept)),
+            _ => refuse(frame, Refusal::Unknown),
+        }
+    }
+
+    fn about(&self) -> About {
+        About {
+            protocol: VERSION,
+            blob_format: FORMAT_VERSION,
+            genes: DEFAULT_GENES as u8,
+            blob_bytes: MAX_BLOB as u16,
+            arithmetic: self.arithmetic,
+            name: self.name.clone(),
+        }
+    }
+
+    fn status(&mut self) -> Result<RobotStatus, Refusal> {
+        let active = self.slots.active().map(|slot| slot as u8);
+        Ok(RobotStatus { active, slots: self.slots.status()?, ticks: self.ticks })
+    }
+
+    /// A blob that cannot drive this robot is not marked as verified.
+    fn commit(&mut self) -> Result<(), Refusal> {
+        let loads = |blob: &Blob| Controller::<S>::new(blob, 0).map(|_| ()).map_err(Refusal::from);
+        self.slots.commit(loads)
+    }
+
+    fn load(&mut self, blob: &Blob) -> Result<(), Refusal> {
+        self.controller = Some(Controller::new(blob, self.number)?);
+        self.ticks = 0;
+        Ok(())
+    }
+
+    fn reset(&mut self, number: u8) -> Result<(), Refusal> {
+        let blob = self.slots.blob_in_charge()?.ok_or(Refusal::NoController)?;
+        self.controller = Some(Controller::new(&blob, number)?);
+        self.number = number;
+        Ok(())
+    }
+
+    fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
+        let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
+        let command = controller.tick(percept);
+        self.ticks = self.ticks.saturating_add(1);
+        if self.ticks == TRIAL_TICKS {
+            self.slots.confirm(controller.identity())?;
+        }
+        Ok(command)
+    }
+}
+
+fn answer<R: Request>(
+    frame: &Frame<'_>,
+    respond: impl FnOnce(R) -> Result<R::Response, Refusal>,
+) -> Result<Vec<u8, MAX_WIRE>, TooLong> {
+    if frame.version != VERSION && !R::FROZEN {
+        return refuse(frame, Refusal::Version { spoken: VERSION });
+    }
+    let response = decode_message(frame.payload).ok_or(Refusal::Malformed).and_then(respond);
+    match response {
+        Ok(response) => encode_message([VERSION, frame.sequence, R::OPERATION | RESPONSE], &response),
+        Err(refusal) => refuse(frame, refusal),
+    }
+}
+
+fn refuse(frame: &Frame<'_>, refusal: Refusal) -> Result<Vec<u8, MAX_WIRE>, TooLong> {
+    encode_message([VERSION, frame.sequence, REFUSED], &refusal)
+}

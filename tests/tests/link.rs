@@ -1,0 +1,397 @@
+//! The link between host and robot: what is said, what is refused, and what bad wires do to it.
+
+use firmware_sim::flash::SimulatedFlash;
+use firmware_sim::link::faults::{Faults, FaultyWire};
+use firmware_sim::link::flashing::{Flashed, flash};
+use firmware_sim::link::wire::LocalRobot;
+use firmware_sim::link::{Client, LinkError, Patience, RemoteBrain, Wire};
+use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
+use grn_core::blob::{Blob, FORMAT_VERSION};
+use grn_core::robot::link::frame::{self, Frame, Receiver};
+use grn_core::robot::link::message::{
+    About, Activate, Arithmetic, Begin, BlobFault, Chunk, Commit, Confirm, Identify, LoadFault, REFUSED, RESPONSE,
+    Request, Reset, RollBack, Status, VERSION, decode_message, encode_request,
+};
+use grn_core::robot::link::server::TRIAL_TICKS;
+use grn_core::robot::link::{Refusal, Server};
+use grn_core::robot::slots::{MAX_BLOB, Stage};
+use grn_core::robot::{Controller, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_tests::decoder::sealed;
+use grn_tests::robots::{LAYOUT, Shipped, blob_of_genes, empty_flash};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::time::Duration;
+
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+type TestServer = Server<SimulatedFlash, f32>;
+
+const PATIENCE: Patience =
+    Patience { response: Duration::from_millis(100), erasure: Duration::from_millis(100), tries: 500 };
+
+fn server(flash: SimulatedFlash) -> TestServer {
+    Server::start(flash, LAYOUT, "test robot", Arithmetic::F32).unwrap()
+}
+
+fn client(server: TestServer) -> Client<LocalRobot<SimulatedFlash, f32>> {
+    Client::connect(LocalRobot::new(server), PATIENCE).unwrap().0
+}
+
+/// Sends bytes as they are; the operation and payload of the answer.
+fn say(server: &mut TestServer, bytes: &[u8]) -> Option<(u8, Vec<u8>)> {
+    let mut receiver = Receiver::new();
+    let mut answer = None;
+    for &byte in bytes {
+        for &answered in server.receive(byte).unwrap_or_default() {
+            let frame = receiver.receive(answered);
+            answer = frame.map(|Frame { operation, payload, .. }| (operation, payload.to_vec())).or(answer);
+        }
+    }
+    answer
+}
+
+fn upload_raw(client: &mut Client<impl Wire>, bytes: &[u8]) -> Result<(), LinkError> {
+    client.ask(&Begin { length: bytes.len() as u32, identity: *bytes[7..].first_chunk().unwrap() })?;
+    for (place, bytes) in bytes.chunks(64).enumerate() {
+        client.ask(&Chunk { offset: place as u32 * 64, bytes: bytes.iter().copied().collect() })?;
+    }
+    client.ask(&Commit)
+}
+
+fn refusal<T>(result: Result<T, LinkError>) -> Refusal {
+    match result {
+        Err(LinkError::Refused(refusal)) => refusal,
+        Err(error) => panic!("{error}"),
+        Ok(_) => panic!("not refused"),
+    }
+}
+
+#[test]
+fn a_blob_is_flashed_proves_itself_and_is_rolled_back() -> Outcome {
+    let model = Shipped::named("nand-xnor");
+    let other = model.cruising_at(0.1);
+    let (mut client, about) = Client::connect(LocalRobot::new(server(empty_flash(0))), PATIENCE)?;
+    let expected = About {
+        protocol: VERSION,
+        blob_format: FORMAT_VERSION,
+        genes: 32,
+        blob_bytes: MAX_BLOB as u16,
+        arithmetic: Arithmetic::F32,
+        name: "test robot".try_into().map_err(|_| "too long")?,
+    };
+    assert_eq!(about, expected);
+    assert_eq!(refusal(client.ask(&Percept::default())), Refusal::NoController);
+    assert_eq!(refusal(client.ask(&Reset { robot: 1 })), Refusal::NoController);
+    assert_eq!(flash(&mut client, &model.bytes, model.identity, true, |_| {})?, Flashed::InCharge);
+    assert_eq!(flash(&mut client, &model.bytes, model.identity, true, |_| {})?, Flashed::WasInCharge);
+    assert_eq!(flash(&mut client, &other.bytes, other.identity, false, |_| {})?, Flashed::InCharge);
+    for _ in 1..TRIAL_TICKS {
+        client.ask(&Percept::default())?;
+    }
+    assert_eq!(client.ask(&Status)?.slots[1].stage, Stage::Trial);
+    client.ask(&Percept::default())?;
+    let status = client.ask(&Status)?;
+    assert_eq!((status.active, status.ticks, status.slots[1].stage), (Some(1), TRIAL_TICKS, Stage::Confirmed));
+    assert_eq!(refusal(client.ask(&Confirm { identity: model.identity })), Refusal::NotThere);
+    client.ask(&RollBack { identity: other.identity })?;
+    assert_eq!(client.ask(&Status)?.active, Some(0));
+    assert_eq!(refusal(client.ask(&RollBack { identity: model.identity })), Refusal::NoFallback);
+    Ok(())
+}
+
+#[test]
+fn a_robot_behind_the_link_does_what_a_robot_in_the_process_does() -> Outcome {
+    let scenario = Scenario::load(format!("{}/../scenarios/channel.toml", env!("CARGO_MANIFEST_DIR")))?;
+    let model = Shipped::named("andn-nand-xnor");
+    let blob = Blob::<32>::decode(&model.bytes)?;
+    let config = || SwarmConfig { scale: 0.25, robots: 6, ..SwarmConfig::default() };
+    let mut native = Swarm::new(&scenario, config(), |robot| Controller::<f32>::new(&blob, robot as u8).unwrap())?;
+    let mut remote = Swarm::new(&scenario, config(), |robot| -> Box<dyn Brain> {
+        let client = client(server(empty_flash(robot as u64)));
+        Box::new(RemoteBrain::start(client, &model.bytes, model.identity, robot as u8).unwrap())
+    })?;
+    for _ in 0..300 {
+        native.step()?;
+        remote.step()?;
+    }
+    assert!(native.trace().encode() == remote.trace().encode(), "the link changes something");
+    Ok(())
+}
+
+#[test]
+fn each_request_is_done_once_however_often_it_arrives() -> Outcome {
+    let model = Shipped::named("nand-xnor");
+    let mut client = client(server(empty_flash(0)));
+    flash(&mut client, &model.bytes, model.identity, true, |_| {})?;
+    let mut server = client.into_wire().into_server();
+    let request = encode_request(77, &Percept::default()).map_err(|_| "too long")?;
+    let first = say(&mut server, &request);
+    for _ in 0..3 {
+        assert_eq!(say(&mut server, &request), first);
+    }
+    let status = say(&mut server, &encode_request(78, &Status).map_err(|_| "too long")?).ok_or("no answer")?;
+    let status: <Status as Request>::Response = decode_message(&status.1).ok_or("no status")?;
+    assert_eq!(status.ticks, 1);
+    Ok(())
+}
+
+#[test]
+fn other_versions_are_refused_but_can_still_upload() -> Outcome {
+    let model = Shipped::named("nand-xnor");
+    let mut server = server(empty_flash(0));
+    let mut sequence = 0;
+    let mut ask = |operation: u8, payload: &[u8]| {
+        sequence += 1;
+        let write = |room: &mut [u8]| {
+            room[..payload.len()].copy_from_slice(payload);
+            Some(payload.len())
+        };
+        let bytes = frame::encode([VERSION + 1, sequence, operation], write).unwrap();
+        say(&mut server, &bytes).unwrap()
+    };
+    let payload = |message: &dyn Fn(&mut [u8]) -> usize| {
+        let mut buffer = vec![0; 600];
+        let length = message(&mut buffer);
+        buffer.truncate(length);
+        buffer
+    };
+    let begin = payload(&|room| {
+        let begin = Begin { length: model.bytes.len() as u32, identity: model.identity };
+        postcard::to_slice(&begin, room).unwrap().len()
+    });
+    assert_eq!(ask(Begin::OPERATION, &begin), (Begin::OPERATION | RESPONSE, vec![]));
+    for (place, bytes) in model.bytes.chunks(64).enumerate() {
+        let chunk = payload(&|room| {
+            let chunk = Chunk { offset: place as u32 * 64, bytes: bytes.iter().copied().collect() };
+            postcard::to_slice(&chunk, room).unwrap().len()
+        });
+        assert_eq!(ask(Chunk::OPERATION, &chunk).0, Chunk::OPERATION | RESPONSE);
+    }
+    assert_eq!(ask(Commit::OPERATION, &[]).0, Commit::OPERATION | RESPONSE);
+    assert_eq!(ask(Activate::OPERATION, &model.identity).0, Activate::OPERATION | RESPONSE);
+    let percept = payload(&|room| postcard::to_slice(&Percept::default(), room).unwrap().len());
+    let (operation, refused) = ask(Percept::OPERATION, &percept);
+    assert_eq!(operation, REFUSED);
+    let refusal: Refusal = decode_message(&refused).ok_or("no refusal")?;
+    assert_eq!(refusal, Refusal::Version { spoken: VERSION });
+    assert!(refusal.to_string().contains("update"));
+    assert_eq!(ask(99, &[]).0, REFUSED);
+    assert_eq!(ask(Begin::OPERATION, &begin[1..]), (REFUSED, vec![2]), "malformed");
+    Ok(())
+}
+
+/// The bytes on the wire, which every later version must keep.
+#[test]
+fn frozen_messages_have_exactly_these_bytes() {
+    let identity = [1, 2, 3, 4, 5, 6, 7, 8];
+    fn bytes(message: &impl serde::Serialize) -> Vec<u8> {
+        postcard::to_slice(message, &mut [0; 64]).unwrap().to_vec()
+    }
+    assert!(bytes(&Identify).is_empty());
+    assert!(bytes(&Status).is_empty());
+    assert_eq!(bytes(&Begin { length: 300, identity }), [0xac, 2, 1, 2, 3, 4, 5, 6, 7, 8]);
+    assert_eq!(bytes(&Chunk { offset: 8, bytes: [9, 9].into_iter().collect() }), [8, 2, 9, 9]);
+    assert!(bytes(&Commit).is_empty());
+    assert_eq!(bytes(&Activate { identity }), identity);
+    assert_eq!(bytes(&Confirm { identity }), identity);
+    assert_eq!(bytes(&RollBack { identity }), identity);
+    assert_eq!(bytes(&Reset { robot: 5 }), [5]);
+    let operations = [
+        Identify::OPERATION,
+        Status::OPERATION,
+        Begin::OPERATION,
+        Chunk::OPERATION,
+        Commit::OPERATION,
+        Activate::OPERATION,
+        Confirm::OPERATION,
+        RollBack::OPERATION,
+        Reset::OPERATION,
+        Percept::OPERATION,
+    ];
+    assert_eq!(operations, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
+    let refusals = [
+        (Refusal::Version { spoken: 7 }, vec![0, 7]),
+        (Refusal::Unknown, vec![1]),
+        (Refusal::Malformed, vec![2]),
+        (Refusal::Layout, vec![3]),
+        (Refusal::Flash, vec![4]),
+        (Refusal::TooLong, vec![5]),
+        (Refusal::OnTrial, vec![6]),
+        (Refusal::NoUpload, vec![7]),
+        (Refusal::Chunk { expected: 8 }, vec![8, 8]),
+        (Refusal::Blob(BlobFault::Length), vec![9, 0]),
+        (Refusal::Blob(BlobFault::NotABlob), vec![9, 1]),
+        (Refusal::Blob(BlobFault::Version { found: 2, read: 1 }), vec![9, 2, 2, 1]),
+        (Refusal::Blob(BlobFault::Damaged), vec![9, 3]),
+        (Refusal::Blob(BlobFault::Convention(4)), vec![9, 4, 4]),
+        (Refusal::Blob(BlobFault::TooManyGenes { genes: 40, capacity: 32 }), vec![9, 5, 40, 32]),
+        (Refusal::Blob(BlobFault::Content), vec![9, 6]),
+        (Refusal::OtherBlob, vec![10]),
+        (Refusal::NotThere, vec![11]),
+        (Refusal::NoFallback, vec![12]),
+        (Refusal::MarksUsedUp, vec![13]),
+        (Refusal::Load(LoadFault::NoPattern), vec![14, 0]),
+        (Refusal::Load(LoadFault::NoRing), vec![14, 1]),
+        (Refusal::Load(LoadFault::StepsPerTick), vec![14, 2]),
+        (Refusal::NoController, vec![15]),
+    ];
+    for (refusal, expected) in refusals {
+        assert_eq!(bytes(&refusal), expected, "{refusal:?}");
+        assert!(refusal.to_string().len() > 20, "{refusal:?} says too little");
+    }
+}
+
+#[test]
+fn unsound_blobs_are_refused_with_a_way_out() -> Outcome {
+    let model = Shipped::named("nand-xnor");
+    let payload = &model.bytes[15..model.bytes.len() - 4];
+    let with = |at: usize, byte: u8| {
+        let mut bytes = model.bytes.clone();
+        bytes[at] = byte;
+        bytes
+    };
+    let mut unfit = payload.to_vec();
+    let time_scale = unfit.len() - 9 * 4;
+    unfit[time_scale..time_scale + 4].copy_from_slice(&0.3_f32.to_le_bytes());
+    let cases = [
+        (with(4, FORMAT_VERSION - 1), "write the blob again"),
+        (with(4, FORMAT_VERSION + 1), "update its firmware"),
+        (model.bytes[..model.bytes.len() - 9].to_vec(), "cut short"),
+        (with(30, model.bytes[30] ^ 1), "upload it again"),
+        (with(0, b'X'), "choose a .grn file"),
+        (blob_of_genes(40), "40 genes, the robot holds at most 32"),
+        (sealed(&unfit), "whole RK4 steps"),
+    ];
+    for (bytes, words) in cases {
+        let mut client = client(server(empty_flash(0)));
+        let refusal = refusal(upload_raw(&mut client, &bytes)).to_string();
+        assert!(refusal.contains(words), "{words:?} is not in {refusal:?}");
+        assert_eq!(client.ask(&Status)?.slots[0].stage, Stage::Partial);
+        flash(&mut client, &model.bytes, model.identity, true, |_| {})?;
+    }
+    Ok(())
+}
+
+/// 10 % of all bytes are flipped, lost or doubled, and the connection breaks at random, again and again.
+#[test]
+fn bad_wires_delay_an_upload_but_never_spoil_it() {
+    let (old, new) = (Shipped::named("nand-xnor").cruising_at(0.1), Shipped::named("andn-nand-xnor"));
+    let (mut uploads, mut connections) = (0, 0);
+    for seed in 0..300 {
+        let mut calm = client(server(empty_flash(seed)));
+        flash(&mut calm, &old.bytes, old.identity, true, |_| {}).unwrap();
+        let mut robot = calm.into_wire();
+        let share = 0.1 / 3.0;
+        let broken = if seed % 2 == 0 { 1e-4 } else { 0.0 };
+        let faults = Faults { flipped: share, dropped: share, doubled: share, broken };
+        let flashed = (0..40).any(|connection| {
+            connections += 1;
+            let faulty = FaultyWire::new(&mut robot, faults, seed << 8 | connection);
+            let Ok((mut client, _)) = Client::connect(faulty, PATIENCE) else { return false };
+            flash(&mut client, &new.bytes, new.identity, true, |_| {}).is_ok()
+        });
+        let status = client(robot.into_server()).ask(&Status).unwrap();
+        let identity = status.slots[usize::from(status.active.unwrap())].identity;
+        assert!([old.identity, new.identity].contains(&identity), "a wrong blob is in charge");
+        assert!(!flashed || identity == new.identity);
+        uploads += usize::from(flashed);
+    }
+    println!("{uploads} of 300 uploads in {connections} connections");
+    assert_eq!(uploads, 300);
+}
+
+/// An operation and its payload as a host might mean it.
+fn sensible(rng: &mut Pcg64, model: &Shipped) -> (u8, Vec<u8>) {
+    let identity = if rng.random_bool(0.5) { model.identity } else { rng.random() };
+    let mut buffer = [0; 600];
+    let operation = rng.random_range(1..11);
+    let written = match operation {
+        Begin::OPERATION => postcard::to_slice(&Begin { length: rng.random_range(0..500), identity }, &mut buffer),
+        Chunk::OPERATION => {
+            let bytes = (0..8 * rng.random_range(0..9)).map(|_| rng.random()).collect();
+            postcard::to_slice(&Chunk { offset: 8 * rng.random_range(0..3), bytes }, &mut buffer)
+        }
+        Activate::OPERATION | Confirm::OPERATION | RollBack::OPERATION => {
+            postcard::to_slice(&Activate { identity }, &mut buffer)
+        }
+        Reset::OPERATION => postcard::to_slice(&Reset { robot: rng.random() }, &mut buffer),
+        Percept::OPERATION => postcard::to_slice(&percept(rng), &mut buffer),
+        _ => postcard::to_slice(&(), &mut buffer),
+    };
+    (operation, written.unwrap().to_vec())
+}
+
+fn senseless(rng: &mut Pcg64) -> (u8, Vec<u8>) {
+    let longest = if rng.random_bool(0.1) { 400 } else { 30 };
+    let length = rng.random_range(0..longest);
+    let operation = if rng.random_bool(0.9) { rng.random_range(0..12) } else { rng.random() };
+    (operation, (0..length).map(|_| rng.random()).collect())
+}
+
+/// Anything, near and far.
+fn percept(rng: &mut Pcg64) -> Percept {
+    let spread = if rng.random_bool(0.5) { 2000 } else { i16::MAX };
+    let mut millimetres = {
+        let mut rng = Pcg64::seed_from_u64(rng.random());
+        move || Millimetres { x: rng.random_range(-spread..=spread), y: rng.random_range(-spread..=spread) }
+    };
+    let heard = |_| Message {
+        sender: rng.random(),
+        position: millimetres(),
+        target: Some(TargetReport {
+            target: rng.random_range(0..6),
+            position: millimetres(),
+            velocity: rng.random(),
+            age: rng.random(),
+        }),
+        obstacles: (0..4).map(|_| ObstacleReport { position: millimetres(), age: rng.random() }).collect(),
+    };
+    let heard = (0..3).map(heard).collect();
+    Percept {
+        position: rng.random(),
+        heading: rng.random(),
+        proximity: rng.random(),
+        targets: (0..2).map(|target| Sighting { target, position: millimetres() }).collect(),
+        obstacles: (0..4).map(|_| millimetres()).collect(),
+        heard,
+    }
+}
+
+/// Random frames, sound and unsound, with and without sense.
+#[test]
+fn no_frame_makes_a_robot_panic() -> Outcome {
+    let inputs = match std::env::var("GRN_FUZZ_INPUTS") {
+        Ok(asked) => asked.parse()?,
+        Err(_) => 200_000,
+    };
+    let model = Shipped::named("nand-xnor");
+    let mut client = client(server(empty_flash(0)));
+    flash(&mut client, &model.bytes, model.identity, true, |_| {})?;
+    let mut server = client.into_wire().into_server();
+    let mut rng = Pcg64::seed_from_u64(11);
+    let (mut answered, mut done) = (0_u64, 0_u64);
+    for input in 0..inputs {
+        let (operation, mut payload) =
+            if rng.random_bool(0.5) { sensible(&mut rng, &model) } else { senseless(&mut rng) };
+        if !payload.is_empty() && rng.random_bool(0.2) {
+            let at = rng.random_range(0..payload.len());
+            payload[at] = rng.random();
+        }
+        let version = if rng.random_bool(0.9) { VERSION } else { rng.random() };
+        let write = |room: &mut [u8]| {
+            room.get_mut(..payload.len())?.copy_from_slice(&payload);
+            Some(payload.len())
+        };
+        let mut bytes = frame::encode([version, input as u8, operation], write).map_err(|_| "too long")?;
+        if rng.random_bool(0.2) {
+            let at = rng.random_range(0..bytes.len());
+            bytes[at] = rng.random();
+        }
+        if let Some((operation, _)) = say(&mut server, &bytes) {
+            answered += 1;
+            done += u64::from(operation != REFUSED);
+        }
+    }
+    println!("{inputs} frames, {answered} answered, {done} requests done");
+    assert!(answered > inputs / 2 && done > inputs / 5, "{answered} answered, {done} done: the exercise has no edge");
+    Ok(())
+}

@@ -9,7 +9,8 @@ fn the_header_is_up_to_date() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(home.join("cbindgen.toml")).expect("cbindgen.toml");
     let sources = ["status.rs", "storage.rs", "message.rs", "lib.rs"].map(|name| home.join("src").join(name));
-    let builder = sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, source| builder.with_src(source));
+    let builder =
+        sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, source| builder.with_src(source));
     let mut made = Vec::new();
     builder.generate().expect("sources that cbindgen understands").write(&mut made);
     let made = String::from_utf8(made).expect("a header in UTF-8");

@@ -8,13 +8,15 @@
 pub mod digest;
 pub mod models;
 pub mod random;
+pub mod scene;
 pub mod walk;
 
 use digest::{Bits, Digest, Hasher};
 use grn_core::blob::{Blob, max_encoded_size};
-use grn_core::dynamics::Expression;
+use grn_core::dynamics::{Expression, Step};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::robot::{Controller, LoadError};
+use grn_core::scalar::Scalar;
 use walk::Walk;
 
 /// How many random networks are exercised besides the printed models.
@@ -119,11 +121,22 @@ fn settle<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     }
 }
 
+/// RK4 steps under constant inputs, as a controller does them.
+pub fn advance<S: Scalar, const N: usize>(
+    expression: &mut Expression<S, N>,
+    network: &Network<S, N>,
+    [x1, x2]: [S; 2],
+    h: Step,
+    steps: u8,
+) {
+    expression.advance(network, x1, x2, h, steps);
+}
+
 fn integrate<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     let mut expression = Expression::<S, DEFAULT_GENES>::silent();
     for (x1, x2) in [(8, 0), (3, 7), (0, 0), (15, 8), (1, 1)] {
         for steps in [1, 1, 2, 8] {
-            expression.advance(network, eighths(x1), eighths(x2), grn_core::dynamics::Step::DEFAULT, steps);
+            advance(&mut expression, network, [eighths(x1), eighths(x2)], Step::DEFAULT, steps);
             for &level in expression.levels(network) {
                 hasher.number(level);
             }

@@ -1,7 +1,7 @@
 //! Random numbers and random models, from a generator of a few lines that is the same everywhere.
 
 use grn_core::blob::{Blob, FieldParameters, Gains};
-use grn_core::bounded::CollectBounded;
+use grn_core::bounded::filled;
 use grn_core::dynamics::Step;
 use grn_core::field::Kernel;
 use grn_core::motif::Motif;
@@ -54,6 +54,9 @@ pub fn blob(seed: u32) -> Option<Blob> {
     let most = if random.once_in(4) { DEFAULT_GENES as u32 } else { 8 };
     let count = 1 + random.below(most);
     let network = Network::new(steepness, (0..count).map(|index| gene(index, &mut random))).ok()?;
+    let exponent = 3 + random.below(5) as u8;
+    // Now and then half a step a tick, which a controller refuses.
+    let steps = if random.once_in(20) { 0.5 } else { f32::from(1_u8 << random.below(5)) };
     Some(Blob {
         network,
         field: FieldParameters {
@@ -63,8 +66,8 @@ pub fn blob(seed: u32) -> Option<Blob> {
         },
         level_fraction: if random.once_in(2) { 0.5 } else { 0.1 + 0.8 * random.fraction() },
         scale: 0.1 + 0.4 * random.fraction(),
-        step: Step::from_exponent(random.below(8) as u8).ok()?,
-        time_scale: f32::from(1_u16 << random.below(7)),
+        step: Step::from_exponent(exponent).ok()?,
+        time_scale: steps * 32.0 / f32::from(1_u16 << exponent),
         gains: Gains { drive: 2.0 * random.fraction(), ..Gains::default() },
     })
 }
@@ -75,7 +78,7 @@ fn gene(index: u32, random: &mut Random) -> Gene<f32> {
     let inputs = random.between(*arity.start() as i32, *arity.end() as i32);
     Gene {
         motif,
-        inputs: (0..inputs).map(|_| Source::from_code(random.below(index + 2) as u8)).collect_bounded(),
+        inputs: filled((0..inputs).map(|_| Source::from_code(random.below(index + 2) as u8))),
         theta: 2.0 * random.fraction(),
     }
 }

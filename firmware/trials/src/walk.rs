@@ -1,8 +1,8 @@
 //! Percepts for a robot that walks where its commands lead, past targets, obstacles and other robots: all in integers.
 
 use crate::random::Random;
-use grn_core::bounded::CollectBounded;
-use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS};
+use grn_core::bounded::filled;
+use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES};
 use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 
 /// One robot's walk.
@@ -31,20 +31,17 @@ impl Walk {
 
     /// What the robot perceives now.
     pub fn percept(&mut self) -> Percept {
+        let near = |metre: i32, random: &mut Random| metre.wrapping_add(random.between(-2000, 2000));
+        let [x, y] = self.position;
+        let (seen, points) = if self.sees { (2, self.random.below(MAX_SEEN_OBSTACLES as u32 + 1)) } else { (0, 0) };
+        let messages = self.random.below(MAX_HEARD as u32 + 1);
         Percept {
-            position: self.position.map(|metre| metre.wrapping_add(self.random.between(-2000, 2000))),
+            position: [near(x, &mut self.random), near(y, &mut self.random)],
             heading: self.heading.map(|component| component as i16),
-            proximity: [(); 8].map(|()| {
-                if self.random.once_in(12) { self.random.below(500) as u16 } else { u16::MAX }
-            }),
-            targets: (0..if self.sees { 2 } else { 0 })
-                .take(MAX_TARGETS)
-                .map(|target| Sighting { target, position: self.target(target, 8) })
-                .collect_bounded(),
-            obstacles: (0..if self.sees { self.random.below(MAX_SEEN_OBSTACLES as u32 + 1) } else { 0 })
-                .map(|_| self.obstacle())
-                .collect_bounded(),
-            heard: (0..self.random.below(MAX_HEARD as u32 + 1)).map(|_| self.message()).collect_bounded(),
+            proximity: [(); 8].map(|()| if self.random.once_in(12) { self.random.below(500) as u16 } else { u16::MAX }),
+            targets: filled((0..seen).map(|target| Sighting { target, position: self.target(target, 8) })),
+            obstacles: filled((0..points).map(|_| self.obstacle())),
+            heard: filled((0..messages).map(|_| self.message())),
         }
     }
 
@@ -87,6 +84,7 @@ impl Walk {
     fn message(&mut self) -> Message {
         let [x, y] = self.position.map(|micrometres| micrometres / 1000);
         let target = self.random.below(2) as u8;
+        let points = self.random.below(5);
         Message {
             sender: self.random.below(12) as u8,
             position: self.near(x, y, 250),
@@ -96,9 +94,9 @@ impl Walk {
                 velocity: [16, 0],
                 age: self.random.below(40) as u8,
             }),
-            obstacles: (0..self.random.below(5))
-                .map(|_| ObstacleReport { position: self.obstacle(), age: self.random.below(44) as u8 })
-                .collect_bounded(),
+            obstacles: filled(
+                (0..points).map(|_| ObstacleReport { position: self.obstacle(), age: self.random.below(44) as u8 }),
+            ),
         }
     }
 }

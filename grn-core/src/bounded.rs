@@ -3,7 +3,7 @@
 use heapless::Vec;
 
 /// The items, as many as fit. Where all are known to fit this is `collect`, whose panic a compiler need not see through.
-pub(crate) fn filled<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
+pub fn filled<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     for item in items {
         if list.push(item).is_err() {

@@ -24,7 +24,7 @@
 extern crate std;
 
 pub mod blob;
-mod bounded;
+pub mod bounded;
 pub mod dynamics;
 pub mod field;
 pub mod geometry;

@@ -1,7 +1,9 @@
 //! Two slots in RAM that outlast a reset but not the emulator: QEMU's STM32F405 has no flash controller.
 
 use core::ptr::NonNull;
-use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash, check_erase, check_read, check_write};
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash, check_erase, check_read, check_write,
+};
 
 /// Where the first slot begins; see `boards/netduinoplus2.x`. QEMU can fill it: `-device loader,addr=0x2001F800,…`.
 pub const ADDRESS: usize = 0x2001_f800;

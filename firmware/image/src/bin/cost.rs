@@ -1,0 +1,98 @@
+//! Counts the instructions of a controller tick and of its parts, and the stack they take.
+//!
+//! The scene is [`scene::everything`]: two targets, eight obstacle points and eight neighbours. Lines are `number model
+//! part instructions`; a tick's largest cost over 32 ticks, of which one in eight sends a message, too.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+use grn_core::blob::Blob;
+use grn_core::dynamics::{Expression, Step};
+use grn_core::geometry::{Point, Vector};
+use grn_core::network::{DEFAULT_GENES, Network};
+use grn_core::pattern::Pattern;
+use grn_core::robot::{Controller, Percept};
+use grn_core::scalar::{Q8_24, Scalar};
+use grn_firmware::board::{counter, print, stack_used};
+use grn_firmware::text::decimal;
+use grn_trials::{advance, models, scene};
+
+grn_firmware::entry!(main);
+
+const MODELS: [(&str, &[u8]); 3] =
+    [("nand-xnor", models::NAND_XNOR), ("andn-nand-xnor", models::ANDN_NAND_XNOR), ("eh-grn-1", models::EH_GRN_1)];
+const TICKS: u32 = 32;
+
+fn main() -> u8 {
+    counter::start();
+    let all_measured = MODELS.iter().all(|(name, bytes)| {
+        let Ok(blob) = Blob::decode(bytes) else { return false };
+        measure::<f32>(name, &blob) && measure::<Q8_24>(name, &blob)
+    });
+    print("stack ");
+    decimal(stack_used());
+    print(" bytes\n");
+    u8::from(!all_measured)
+}
+
+/// Instructions of `work`, less those of counting.
+fn instructions(work: &mut dyn FnMut()) -> u32 {
+    let count = |work: &mut dyn FnMut()| {
+        let work = black_box(work);
+        let before = counter::read();
+        work();
+        counter::read().wrapping_sub(before)
+    };
+    count(work).wrapping_sub(count(&mut || ()))
+}
+
+/// The parts of a tick and the whole; false if the blob makes no controller.
+fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
+    let show = |part: &str, count: u32| {
+        for word in [S::NAME, " ", model, " ", part, " "] {
+            print(word);
+        }
+        decimal(count as usize);
+        print("\n");
+    };
+    let Ok(mut controller) = Controller::<S>::new(blob, 0) else { return false };
+    let everything = scene::everything();
+    let mut dearest = |percept: &Percept| {
+        (0..TICKS)
+            .map(|_| {
+                instructions(&mut || {
+                    black_box(controller.tick(black_box(percept)));
+                })
+            })
+            .fold(0, u32::max)
+    };
+    let tick = dearest(&everything);
+    // The memory still holds what the ticks before told.
+    let remembering = dearest(&scene::nothing());
+    show("tick", tick);
+    show("tick-percept", tick.saturating_sub(remembering));
+
+    let network: Network<S> = blob.network.cast();
+    let field = blob.field.field::<S>(blob.scale);
+    let Ok(pattern) = Pattern::of(&network, S::from_f32(blob.level_fraction)) else { return false };
+    let metres = |x: i32, y: i32| Vector::new(S::from_ratio(x, 1000), S::from_ratio(y, 1000));
+    let targets = [metres(150, 60), metres(-220, 180)];
+    let obstacles: [Point<S>; 8] = [0, 1, 2, 3, 4, 5, 6, 7].map(|number| metres(40 * number - 140, 300));
+    let mut here = field.at(Vector::ZERO, targets, &obstacles[..]);
+    show("field", instructions(&mut || here = black_box(field.at(black_box(Vector::ZERO), targets, &obstacles[..]))));
+    show(
+        "gradient",
+        instructions(&mut || {
+            black_box(pattern.error_gradient(&network, black_box(&here)));
+        }),
+    );
+    let mut expression = Expression::<S, DEFAULT_GENES>::silent();
+    let mut integrate = |steps: u8| {
+        instructions(&mut || advance(&mut expression, &network, [black_box(here.x1), here.x2], Step::DEFAULT, steps))
+    };
+    let (none, one, two) = (integrate(0), integrate(1), integrate(2));
+    show("rk4-constants", none);
+    show("rk4-first-step", one);
+    show("rk4-next-step", two.saturating_sub(one));
+    true
+}

@@ -1,0 +1,49 @@
+//! The scene in which costs are measured: all a robot can perceive in one tick.
+
+use grn_core::bounded::filled;
+use grn_core::robot::{Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+
+/// Two targets, eight obstacle points and eight neighbours.
+const TARGETS: [Millimetres; 2] = [Millimetres { x: 150, y: 60 }, Millimetres { x: -220, y: 180 }];
+const NEIGHBOURS: u8 = 8;
+
+/// Obstacle points 40 mm apart on a wall to the north, each in a square of the robot's map of its own.
+fn obstacle(number: u8) -> Millimetres {
+    Millimetres { x: 40 * i16::from(number) - 140, y: 300 }
+}
+
+/// What a mother robot at the origin perceives in the hardest tick: it sees both targets and all points itself, and hears
+/// all neighbours at once, each with a target and four of the points.
+pub fn everything() -> Percept {
+    Percept {
+        targets: filled((0..).zip(TARGETS).map(|(target, position)| Sighting { target, position })),
+        obstacles: filled((0..8).map(obstacle)),
+        heard: filled((0..NEIGHBOURS).map(neighbour)),
+        ..nothing()
+    }
+}
+
+/// The same place, and nothing to be perceived there.
+pub fn nothing() -> Percept {
+    let mut proximity = [u16::MAX; 8];
+    // Two sensors feel something.
+    for (felt, distance) in proximity.iter_mut().zip([120, 250]) {
+        *felt = distance;
+    }
+    Percept { heading: [1 << 14, 0], proximity, ..Percept::default() }
+}
+
+fn neighbour(number: u8) -> Message {
+    let (column, row) = (i16::from(number % 4), i16::from(number / 4));
+    Message {
+        sender: number + 1,
+        position: Millimetres { x: 90 * column - 140, y: 160 * row - 80 },
+        target: (0..).zip(TARGETS).nth(usize::from(number % 2)).map(|(target, position)| TargetReport {
+            target,
+            position,
+            velocity: [0, 0],
+            age: 3,
+        }),
+        obstacles: filled((0..4).map(|point| ObstacleReport { position: obstacle((number + point) % 8), age: 1 })),
+    }
+}

@@ -16,7 +16,8 @@ use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::dynamics::{Expression, Step};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::robot::{Controller, LoadError};
-use grn_core::scalar::Scalar;
+use grn_core::scalar::{Dual, Scalar};
+use heapless::Vec;
 use walk::Walk;
 
 /// How many random networks are exercised besides the printed models.
@@ -121,22 +122,19 @@ fn settle<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     }
 }
 
-/// RK4 steps under constant inputs, as a controller does them.
-pub fn advance<S: Scalar, const N: usize>(
-    expression: &mut Expression<S, N>,
-    network: &Network<S, N>,
-    [x1, x2]: [S; 2],
-    h: Step,
-    steps: u8,
-) {
-    expression.advance(network, x1, x2, h, steps);
+/// The genes at rest under these inputs, with their gradients, as a controller computes them once a tick.
+pub fn at_rest<S: Scalar, const N: usize>(network: &Network<S, N>, [x1, x2]: [S; 2]) -> Vec<Dual<S>, N> {
+    let mut rest = Vec::new();
+    network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+    rest
 }
 
 fn integrate<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     let mut expression = Expression::<S, DEFAULT_GENES>::silent();
     for (x1, x2) in [(8, 0), (3, 7), (0, 0), (15, 8), (1, 1)] {
         for steps in [1, 1, 2, 8] {
-            advance(&mut expression, network, [eighths(x1), eighths(x2)], Step::DEFAULT, steps);
+            let x = [eighths(x1), eighths(x2)];
+            expression.advance(network, x, &at_rest(network, x), Step::DEFAULT, steps);
             for &level in expression.levels(network) {
                 hasher.number(level);
             }

@@ -15,7 +15,7 @@ use grn_core::robot::{Controller, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
 use grn_firmware::text::decimal;
-use grn_trials::{advance, models, scene};
+use grn_trials::{at_rest, models, scene};
 
 grn_firmware::entry!(main);
 
@@ -80,18 +80,20 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     let obstacles: [Point<S>; 8] = [0, 1, 2, 3, 4, 5, 6, 7].map(|number| metres(40 * number - 140, 300));
     let mut here = field.at(Vector::ZERO, targets, &obstacles[..]);
     show("field", instructions(&mut || here = black_box(field.at(black_box(Vector::ZERO), targets, &obstacles[..]))));
+    let x = [here.x1, here.x2];
+    let mut rest = at_rest(&network, x);
+    show("rest", instructions(&mut || rest = black_box(at_rest(&network, black_box(x)))));
+    let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
     show(
         "gradient",
         instructions(&mut || {
-            black_box(pattern.error_gradient(&network, black_box(&here)));
+            black_box(pattern.error_gradient(black_box(slopes), &here));
         }),
     );
     let mut expression = Expression::<S, DEFAULT_GENES>::silent();
-    let mut integrate = |steps: u8| {
-        instructions(&mut || advance(&mut expression, &network, [black_box(here.x1), here.x2], Step::DEFAULT, steps))
-    };
-    let (none, one, two) = (integrate(0), integrate(1), integrate(2));
-    show("rk4-constants", none);
+    let mut integrate =
+        |steps: u8| instructions(&mut || expression.advance(&network, black_box(x), &rest, Step::DEFAULT, steps));
+    let (one, two) = (integrate(1), integrate(2));
     show("rk4-first-step", one);
     show("rk4-next-step", two.saturating_sub(one));
     true

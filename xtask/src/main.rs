@@ -1,6 +1,7 @@
 //! What a person would otherwise type by hand. `cargo xtask` without arguments says what there is.
 
 mod tally;
+mod target;
 
 use std::env;
 use std::process::{Command, ExitCode};
@@ -9,8 +10,11 @@ use tally::Tally;
 const HELP: &str = "cargo xtask TASK
 
   test   build everything and run all tests; ends with a line that counts them
+  target [--bless]
+         build the images for the emulated boards, check that they cannot panic and what they weigh, run them in QEMU
+         and compare what they print with firmware/golden; a part of test. --bless writes these files anew
   bench  run the benchmarks (criterion); figures on standard output
-  bless  write the golden files anew: models/*.grn (look at the difference before you commit)
+  bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
@@ -22,6 +26,7 @@ fn main() -> ExitCode {
     let task = env::args().nth(1).unwrap_or_default();
     let done = match task.as_str() {
         "test" => test(),
+        "target" => target(env::args().nth(2).as_deref()),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
         "reproduce" => reproduce(),
@@ -61,9 +66,24 @@ fn test() -> bool {
         println!("cargo {}", arguments.join(" "));
         tally.follow(this_cargo().args(&arguments))
     });
+    target::check(false, &mut tally);
     let all = succeeded.into_iter().all(|success| success);
-    println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed.max(usize::from(!all)), tally.ignored);
-    all && tally.failed == 0 && tally.passed > 0
+    tally.close(all)
+}
+
+/// What runs on the robot: built, weighed and run in QEMU.
+fn target(option: Option<&str>) -> bool {
+    let bless = match option {
+        None => false,
+        Some("--bless") => true,
+        Some(other) => {
+            eprintln!("cargo xtask target knows no {other:?}, only --bless");
+            return false;
+        }
+    };
+    let mut tally = Tally::default();
+    target::check(bless, &mut tally);
+    tally.close(true)
 }
 
 fn reproduce() -> bool {

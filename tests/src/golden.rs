@@ -2,6 +2,7 @@
 
 use firmware_sim::scenario::Morphogen;
 use grn_core::field::Kernel;
+use grn_core::scalar::Q8_24;
 use host_evolver::deploy;
 use host_evolver::files::blob_bytes;
 use host_evolver::published::PUBLISHED;
@@ -19,6 +20,15 @@ pub fn morphogen() -> Morphogen {
 
 /// Anything that keeps a golden file from being made.
 pub type GoldenError = Box<dyn std::error::Error>;
+
+/// The file of digests that every machine must give, and its text as this one gives it.
+pub fn digests() -> (PathBuf, String) {
+    let [f32, fixed] = [
+        grn_trials::digests::<f32>().lines::<f32>().to_string(),
+        grn_trials::digests::<Q8_24>().lines::<Q8_24>().to_string(),
+    ];
+    (repository("tests/golden/digest.txt"), f32 + &fixed)
+}
 
 /// The blobs of the printed models that ship in `models/`: path and bytes.
 ///

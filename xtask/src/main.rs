@@ -2,6 +2,7 @@
 
 mod c_examples;
 mod tally;
+mod target;
 
 use std::env;
 use std::process::{Command, ExitCode};
@@ -10,10 +11,14 @@ use tally::Tally;
 const HELP: &str = "cargo xtask TASK
 
   test   build everything and run all tests; ends with a line that counts them
+  target [--bless]
+         build the images for the emulated boards, check that they cannot panic and what they weigh, run them in QEMU
+         and compare what they print with firmware/golden; a part of test. --bless writes these files anew
+  c [--bless]
+         test the C library and its examples, on this machine and on an emulated chip; a part of test. --bless writes its
+         header and the examples' expected output anew
   bench  run the benchmarks (criterion); figures on standard output
-  c      test the C library and its examples, on this machine and on an emulated chip;
-         with --bless its header and the examples' expected output are written anew
-  bless  write the golden files anew: models/*.grn (look at the difference before you commit)
+  bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
@@ -25,9 +30,14 @@ fn main() -> ExitCode {
     let task = env::args().nth(1).unwrap_or_default();
     let done = match task.as_str() {
         "test" => test(),
+        "target" => target(bless()),
+        "c" => {
+            let mut tally = Tally::default();
+            let succeeded = c_library(bless(), &mut tally);
+            tally.close(succeeded)
+        }
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
-        "c" => c_library(env::args().any(|argument| argument == "--bless")),
         "reproduce" => reproduce(),
         "fuzz" => fuzz(),
         "" | "help" | "--help" | "-h" => {
@@ -53,35 +63,54 @@ fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> bool {
     status.inspect_err(|error| eprintln!("cargo cannot be run: {error}")).is_ok_and(|status| status.success())
 }
 
-/// All tests of the workspace; no test is left out but those marked ignored, which are counted as skipped.
+/// Whether the task is to write its golden files anew.
+fn bless() -> bool {
+    env::args().nth(2).as_deref() == Some("--bless")
+}
+
+/// Runs cargo with its output shown and counts tests; whether it succeeded.
+fn cargo_test(arguments: &[&str], tally: &mut Tally) -> bool {
+    println!("cargo {}", arguments.join(" "));
+    tally.follow(this_cargo().args(arguments))
+}
+
+/// All tests there are; none is left out but those marked ignored, which are counted as skipped.
 fn test() -> bool {
     let mut tally = Tally::default();
-    let runs = [
-        vec!["test", "--workspace", "--no-fail-fast"],
+    let succeeded = [
+        cargo_test(&["test", "--workspace", "--no-fail-fast"], &mut tally),
         // The same core with the other sigmoid, which only the core's own tests are about.
-        vec!["test", "--package", "grn-core", "--features", "micromath", "--no-fail-fast"],
+        cargo_test(&["test", "--package", "grn-core", "--features", "micromath", "--no-fail-fast"], &mut tally),
+        images(false, &mut tally),
+        c_library(false, &mut tally),
     ];
-    let succeeded = runs.map(|arguments| {
-        println!("cargo {}", arguments.join(" "));
-        tally.follow(this_cargo().args(&arguments))
-    });
-    let all = succeeded.into_iter().all(|success| success);
-    println!("{} passed, {} failed, {} skipped", tally.passed, tally.failed.max(usize::from(!all)), tally.ignored);
-    all && tally.failed == 0 && tally.passed > 0
+    tally.close(succeeded.into_iter().all(|success| success))
+}
+
+/// What runs on the robot: built, weighed and run in QEMU.
+fn target(bless: bool) -> bool {
+    let mut tally = Tally::default();
+    let succeeded = images(bless, &mut tally);
+    tally.close(succeeded)
+}
+
+/// The images, then robots that run them in a simulated swarm.
+fn images(bless: bool, tally: &mut Tally) -> bool {
+    target::check(bless, tally);
+    let loops = ["--features", "qemu", "--test", "processor_in_the_loop", "--no-fail-fast"];
+    cargo_test(&[&["test", "--package", "grn-tests"], &loops[..]].concat(), tally)
 }
 
 /// The C library's own tests, then its examples.
-fn c_library(bless: bool) -> bool {
-    let mut tally = Tally::default();
+fn c_library(bless: bool, tally: &mut Tally) -> bool {
     let mut tests = this_cargo();
     tests.args(["test", "--manifest-path", "firmware/Cargo.toml", "--package", "grn-c", "--no-fail-fast"]);
     if bless {
         tests.env("GRN_BLESS", "1");
     }
     let succeeded = tally.follow(&mut tests);
-    let examples = c_examples::check();
-    println!("{} passed, {} failed", tally.passed + examples.passed, tally.failed + examples.failed);
-    succeeded && examples.failed == 0
+    c_examples::check(tally);
+    succeeded
 }
 
 fn reproduce() -> bool {

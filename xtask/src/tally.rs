@@ -32,6 +32,13 @@ impl Tally {
         child.wait().is_ok_and(|status| status.success())
     }
 
+    /// Prints the closing line; whether all is well. `succeeded`: no command failed, whatever it counted.
+    pub fn close(&self, succeeded: bool) -> bool {
+        let failed = self.failed.max(usize::from(!succeeded));
+        println!("{} passed, {failed} failed, {} skipped", self.passed, self.ignored);
+        failed == 0 && self.passed > 0
+    }
+
     /// Counts a line like `test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; …`.
     fn count(&mut self, line: &str) {
         let Some((_, counts)) = line.split_once("test result: ") else { return };

@@ -11,6 +11,7 @@ pub mod random;
 pub mod scene;
 pub mod walk;
 
+use core::fmt;
 use digest::{Bits, Digest, Hasher};
 use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::dynamics::{Expression, Step};
@@ -52,6 +53,16 @@ impl Digests {
             ("commands", self.commands),
             ("long-run", self.long_run),
         ]
+    }
+
+    /// A line `number part digest` for every part and for all, as in `tests/golden/digest.txt`.
+    pub fn lines<S: Bits>(&self) -> impl fmt::Display {
+        let digests = *self;
+        fmt::from_fn(move |f| {
+            let all = ("all", digests.all());
+            let mut lines = digests.parts().into_iter().chain([all]);
+            lines.try_for_each(|(part, digest)| writeln!(f, "{} {part} {digest}", S::NAME))
+        })
     }
 
     /// One digest of them all.

@@ -4,6 +4,7 @@
 //! patterns and the robot need. `f32` and [`Q8_24`] run on robots; `f64` is the host's reference; [`Dual`] carries a
 //! gradient with respect to the two inputs through the same generic code, and [`Stages`] the stages of an integration step.
 
+mod division;
 mod dual;
 mod exp;
 mod isqrt;

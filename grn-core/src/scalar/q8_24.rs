@@ -1,5 +1,6 @@
 //! Q8.24: 8 integer bits (signed), 24 fractional bits, saturating.
 
+use super::division::quotient;
 use super::isqrt::isqrt;
 use super::{Arithmetic, Scalar};
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -68,13 +69,10 @@ impl Mul for Q8_24 {
 impl Div for Q8_24 {
     type Output = Self;
     /// Rounded towards zero; division by zero saturates with the dividend's sign (0 / 0 is 0).
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the dividend is widened by a shift")]
     fn div(self, other: Self) -> Self {
-        let dividend = i64::from(self.to_bits()) << FRACTION_BITS;
-        match dividend.checked_div(i64::from(other.to_bits())) {
-            Some(quotient) => Self::saturating_from_wide(quotient),
-            None => Self::saturating_from_wide(dividend.saturating_mul(i64::from(i32::MAX))),
-        }
+        let [dividend, divisor] = [self, other].map(|number| number.to_bits().unsigned_abs());
+        let magnitude = i64::from(quotient(dividend, divisor));
+        Self::saturating_from_wide(if (self.to_bits() < 0) == (other.to_bits() < 0) { magnitude } else { -magnitude })
     }
 }
 

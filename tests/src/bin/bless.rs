@@ -5,5 +5,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         host_evolver::files::write(&path, &bytes)?;
         println!("{} ({} bytes)", path.display(), bytes.len());
     }
+    let (path, text) = grn_tests::golden::digests();
+    host_evolver::files::write(&path, text.as_bytes())?;
+    println!("{}", path.display());
     Ok(())
 }

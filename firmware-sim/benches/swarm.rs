@@ -22,7 +22,7 @@ const TICKS: usize = 320;
 /// How many robots' percepts are replayed to the controller alone; one of them is a mother's.
 const REPLAYED: usize = 20;
 /// A robot speaks every so many ticks, as under the real controller.
-const BROADCAST_PERIOD: u32 = 4;
+const BROADCAST_PERIOD: u32 = 8;
 
 /// Circles the target it last heard of, turns away from what is near, and broadcasts a full message in its turn.
 struct Cheap {

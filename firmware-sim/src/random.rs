@@ -45,9 +45,11 @@ impl Stream {
         f64::from(self.0.next_u32()) * (1.0 / 4_294_967_296.0)
     }
 
-    /// Triangular in (-1, 1) with its peak at 0; standard deviation 1/√6.
+    /// Triangular in (-1, 1) with its peak at 0, a multiple of 2^-16; standard deviation 1/√6.
     pub fn triangular(&mut self) -> f64 {
-        self.unit() - self.unit()
+        let draw = self.0.next_u32();
+        let [one, other] = [draw >> 16, draw & 0xffff].map(|half| half as i32);
+        f64::from(one - other) * (1.0 / 65_536.0)
     }
 
     /// Uniform in [-1, 1).

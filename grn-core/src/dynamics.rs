@@ -16,14 +16,19 @@ impl<S: Scalar, const N: usize> Network<S, N> {
         self.settled([Dual::input(x1, 0), Dual::input(x2, 1)])
     }
 
-    /// M in the steady state for inputs (x1, x2) of any arithmetic over `S`: what the two methods above are made of.
+    /// M in the steady state for inputs (x1, x2) of any arithmetic over `S`.
     pub fn settled<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
-        let mut levels: Vec<A, N> = Vec::new();
-        self.regulate(x, &mut levels, |levels, _, regulation| {
+        let mut levels = Vec::new();
+        self.settle(x, &mut levels);
+        levels.last().copied().unwrap_or(A::ZERO)
+    }
+
+    /// Puts the level of each gene in the steady state into the empty list `levels`. M is the last one.
+    pub fn settle<A: Arithmetic<Real = S>>(&self, x: [A; 2], levels: &mut Vec<A, N>) {
+        self.regulate(x, levels, |levels, _, regulation| {
             // Genes are visited in order and there are at most N, so the next level always fits.
             let _ = levels.push(regulation);
         });
-        levels.last().copied().unwrap_or(A::ZERO)
     }
 }
 
@@ -106,20 +111,20 @@ impl<S: Scalar, const N: usize> Expression<S, N> {
         self.levels(network).last().copied().unwrap_or(S::ZERO)
     }
 
-    /// Advances by `steps` steps h of the classical Runge-Kutta method of fourth order, inputs constant over all of them.
+    /// Advances by `steps` steps h of the classical Runge-Kutta method of fourth order under the inputs `x` = [x1, x2],
+    /// constant over all of them, with the genes' levels at `rest` under the same inputs ([`Network::settle`]).
     ///
     /// In Q8.24 the levels come to rest within 2^(n-24) of the steady state for h = 2^-n: smaller increments round to 0.
     ///
     /// Because a gene reads only earlier genes, a step goes gene by gene instead of stage by stage: the levels that a
     /// gene's inputs have in the four stages give its four regulations side by side, and these give its own levels.
-    /// The regulation of a gene that reads inputs only is the same in all stages of all steps.
-    pub fn advance(&mut self, network: &Network<S, N>, x1: S, x2: S, h: Step, steps: u8) {
-        let nothing: &[S] = &[];
+    /// The regulation of a gene that reads inputs only is its level at rest in all stages of all steps.
+    pub fn advance(&mut self, network: &Network<S, N>, x: [S; 2], rest: &[Dual<S>], h: Step, steps: u8) {
+        let x = x.map(Stages::constant);
         let mut constants: Vec<Option<S>, N> = Vec::new();
-        for gene in network.genes() {
-            let constant = gene.reads_inputs_only().then(|| network.regulation(gene, [x1, x2], &nothing));
+        for (gene, rest) in network.genes().iter().zip(rest) {
             // There are at most N.
-            let _ = constants.push(constant);
+            let _ = constants.push(gene.reads_inputs_only().then_some(rest.value));
         }
         let sixth = S::from_ratio(1, 6);
         for _ in 0..steps {
@@ -127,7 +132,7 @@ impl<S: Scalar, const N: usize> Expression<S, N> {
             for ((gene, constant), level) in network.genes().iter().zip(&constants).zip(&mut self.levels) {
                 let Stages([r1, r2, r3, r4]) = match *constant {
                     Some(regulation) => Stages::constant(regulation),
-                    None => network.regulation(gene, [x1, x2].map(Stages::constant), &stages),
+                    None => network.regulation(gene, x, &stages),
                 };
                 let k1 = r1 - *level;
                 let second = *level + k1.halved(h.0 + 1);
@@ -184,10 +189,18 @@ mod tests {
         [0, 1, 2].map(|i| fine[i] + (fine[i] - coarse[i]) / 3.0)
     }
 
+    fn at_rest<S: Scalar>(network: &Network<S, 8>, [x1, x2]: [S; 2]) -> heapless::Vec<Dual<S>, 8> {
+        let mut rest = heapless::Vec::new();
+        network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+        rest
+    }
+
     fn integrate<S: Scalar>(network: &Network<S, 8>, x1: f64, x2: f64, h: Step, steps: usize) -> f64 {
         let mut expression = Expression::silent();
+        let x = [x1, x2].map(S::from_f64);
+        let rest = at_rest(network, x);
         for _ in 0..steps {
-            expression.advance(network, S::from_f64(x1), S::from_f64(x2), h, 1);
+            expression.advance(network, x, &rest, h, 1);
         }
         expression.morphogen(network).to_f64()
     }
@@ -233,7 +246,8 @@ mod tests {
                 let mut expected = [S::ZERO; 3];
                 for steps in [1, 2, 5].into_iter().cycle().take(50) {
                     let x = [S::from_f64(x1), S::from_f64(x2)];
-                    expression.advance(&network, x[0], x[1], Step::DEFAULT, steps);
+                    let rest = at_rest(&network, x);
+                    expression.advance(&network, x, &rest, Step::DEFAULT, steps);
                     expected = (0..steps).fold(expected, |levels, _| stage_by_stage(&network, levels, x, 5));
                     assert_eq!(expression.levels(&network), expected);
                 }

@@ -83,10 +83,11 @@ impl Motif {
 
     /// The regulation R of dy/dt = -y + R, with σ(x) = 1 / (1 + e^(-k(x - θ))).
     ///
-    /// `inputs` holds as many expression levels as [`Motif::arity`] allows; a missing one counts as 0.
-    pub fn regulation<A: Arithmetic>(self, inputs: &[A], theta: A::Real, k: A::Real) -> A {
+    /// `inputs` gives as many expression levels as [`Motif::arity`] allows; a missing one counts as 0.
+    #[inline]
+    pub fn regulation<A: Arithmetic>(self, inputs: impl IntoIterator<Item = A>, theta: A::Real, k: A::Real) -> A {
         let sig = |x: A| x.sigmoid(theta, k);
-        let mut levels = inputs.iter().copied();
+        let mut levels = inputs.into_iter();
         let a = levels.next().unwrap_or(A::ZERO);
         let b = levels.next().unwrap_or(A::ZERO);
         let sum = || levels.fold(a + b, |sum, level| sum + level);
@@ -127,7 +128,7 @@ mod tests {
         ];
         for (motif, value) in expected {
             let inputs = &[a, b, c][..(*motif.arity().end()).min(3)];
-            let got = motif.regulation(inputs, theta, k);
+            let got = motif.regulation(inputs.iter().copied(), theta, k);
             assert!((got - value).abs() < 1e-12, "{}: {got} against {value}", motif.name());
         }
     }

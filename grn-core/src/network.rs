@@ -242,16 +242,12 @@ impl<S: Scalar, const N: usize> Network<S, N> {
     /// The regulation R of one gene.
     #[inline]
     pub(crate) fn regulation<A: Arithmetic<Real = S>>(&self, gene: &Gene<S>, x: [A; 2], y: &impl Levels<A>) -> A {
-        let mut operands = [A::ZERO; MAX_INPUTS];
-        for (operand, source) in operands.iter_mut().zip(&gene.inputs) {
-            *operand = match *source {
-                Source::X1 => x[0],
-                Source::X2 => x[1],
-                Source::Gene(earlier) => y.level(usize::from(earlier)),
-            };
-        }
-        let operands = operands.get(..gene.inputs.len()).unwrap_or(&operands);
-        gene.motif.regulation(operands, gene.theta, self.steepness)
+        let inputs = gene.inputs.iter().map(|source| match *source {
+            Source::X1 => x[0],
+            Source::X2 => x[1],
+            Source::Gene(earlier) => y.level(usize::from(earlier)),
+        });
+        gene.motif.regulation(inputs, gene.theta, self.steepness)
     }
 }
 

@@ -66,9 +66,9 @@ impl<S: Scalar> Pattern<S> {
         (m - self.level) / self.contrast
     }
 
-    /// ∇φ in 1/m, from the steady state's slopes at the morphogens of a point.
-    pub fn error_gradient<const N: usize>(&self, network: &Network<S, N>, here: &Morphogens<S>) -> Vector<S> {
-        let [d1, d2] = network.steady_state_gradient(here.x1, here.x2).gradient;
+    /// ∇φ in 1/m, from the morphogens of a point and M's `slopes` (∂M/∂x1, ∂M/∂x2) there.
+    pub fn error_gradient(&self, slopes: [S; 2], here: &Morphogens<S>) -> Vector<S> {
+        let [d1, d2] = slopes;
         here.x1_gradient * (d1 / self.contrast) + here.x2_gradient * (d2 / self.contrast)
     }
 
@@ -119,7 +119,8 @@ impl<S: Scalar> Pattern<S> {
         let mut point = start;
         let (mut error, mut here) = look(start);
         for _ in 0..NEWTON_STEPS {
-            let (distance, direction) = newton_step(error, self.error_gradient(network, &here))?;
+            let slopes = network.steady_state_gradient(here.x1, here.x2).gradient;
+            let (distance, direction) = newton_step(error, self.error_gradient(slopes, &here))?;
             let mut step = direction * distance.clamp(-longest, longest);
             let better = (0..=BACKTRACKS).find_map(|_| {
                 let tried = look(point + step);

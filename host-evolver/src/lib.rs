@@ -5,6 +5,8 @@ pub mod cli;
 pub mod deploy;
 pub mod describe;
 pub mod eh_grn;
+#[cfg(unix)]
+pub mod emulation;
 pub mod evolve;
 pub mod figures;
 pub mod files;

@@ -1,6 +1,7 @@
 //! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
 
 use crate::objective::Model;
+use firmware_sim::brain::Brain;
 use firmware_sim::config::{ConfigError, SwarmConfig};
 use firmware_sim::metrics::{Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
@@ -44,6 +45,8 @@ pub enum SimulationError {
     Config(ConfigError),
     /// A robot's brain failed.
     Brain(String),
+    /// An emulated robot could not be started.
+    Emulator(String),
 }
 
 impl fmt::Display for SimulationError {
@@ -52,7 +55,7 @@ impl fmt::Display for SimulationError {
             SimulationError::Load(error) => error.fmt(f),
             SimulationError::NoPattern(error) => error.fmt(f),
             SimulationError::Config(error) => error.fmt(f),
-            SimulationError::Brain(error) => f.write_str(error),
+            SimulationError::Brain(error) | SimulationError::Emulator(error) => f.write_str(error),
         }
     }
 }
@@ -116,20 +119,26 @@ pub fn simulate(
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        Number::F32 => simulate_in::<f32>(blob, scenario, config, watch),
-        Number::Q824 => simulate_in::<Q8_24>(blob, scenario, config, watch),
+        Number::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
+        Number::Q824 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
     }
 }
 
-fn simulate_in<S: Scalar>(
+/// The controllers of a swarm in this process, by robot number.
+pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Controller<S>, SimulationError> {
+    let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
+    Ok(move |robot: usize| fresh.clone().on_robot(robot as u8))
+}
+
+/// [`simulate`] with any brains.
+pub(crate) fn run<B: Brain>(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
+    brain: impl FnMut(usize) -> B,
     mut watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     let ruler = PatternRuler::new(blob, scenario).map_err(SimulationError::NoPattern)?;
-    let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
-    let brain = |robot: usize| fresh.clone().on_robot(robot as u8);
     let mut swarm = Swarm::new(scenario, config, brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
     let outcome = swarm.run(end, |progress| watch(progress.tick as f64 / progress.end.max(1) as f64));

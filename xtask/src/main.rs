@@ -1,5 +1,6 @@
 //! What a person would otherwise type by hand. `cargo xtask` without arguments says what there is.
 
+mod c_examples;
 mod tally;
 mod target;
 
@@ -14,6 +15,8 @@ const HELP: &str = "cargo xtask TASK
          build the images for the emulated boards, check that they cannot panic and what they weigh, run them in QEMU
          and compare what they print with firmware/golden; a part of test. --bless writes these files anew
   bench  run the benchmarks (criterion); figures on standard output
+  c      test the C library and its examples, on this machine and on an emulated chip;
+         with --bless its header and the examples' expected output are written anew
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
@@ -29,6 +32,7 @@ fn main() -> ExitCode {
         "target" => target(env::args().nth(2).as_deref()),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless"], &[]),
+        "c" => c_library(env::args().any(|argument| argument == "--bless")),
         "reproduce" => reproduce(),
         "fuzz" => fuzz(),
         "" | "help" | "--help" | "-h" => {
@@ -84,6 +88,20 @@ fn target(option: Option<&str>) -> bool {
     let mut tally = Tally::default();
     target::check(bless, &mut tally);
     tally.close(true)
+}
+
+/// The C library's own tests, then its examples.
+fn c_library(bless: bool) -> bool {
+    let mut tally = Tally::default();
+    let mut tests = this_cargo();
+    tests.args(["test", "--manifest-path", "firmware/Cargo.toml", "--package", "grn-c", "--no-fail-fast"]);
+    if bless {
+        tests.env("GRN_BLESS", "1");
+    }
+    let succeeded = tally.follow(&mut tests);
+    let examples = c_examples::check();
+    println!("{} passed, {} failed", tally.passed + examples.passed, tally.failed + examples.failed);
+    succeeded && examples.failed == 0
 }
 
 fn reproduce() -> bool {

@@ -43,15 +43,18 @@ impl<W: Wire + ?Sized> Wire for &mut W {
     }
 }
 
-/// What came of reading with a time limit.
+/// What came of reading with a time limit; a signal ends the waiting early.
 ///
 /// # Errors
 /// All but the limit's own; an end of the stream becomes [`io::ErrorKind::UnexpectedEof`].
 pub fn read_within(read: io::Result<usize>) -> io::Result<usize> {
     match read {
         Ok(0) => Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the other side has gone")),
-        Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Ok(0),
-        other => other,
+        Err(error) => match error.kind() {
+            io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(0),
+            _ => Err(error),
+        },
+        Ok(count) => Ok(count),
     }
 }
 

@@ -9,9 +9,9 @@
 //     status = grn_tick(&controller, &percept, &command);   // every 1/32 s; then set the wheels to command
 //
 // The library allocates nothing and keeps no state of its own; equal blobs and percepts give equal commands, bit for bit,
-// on every machine. A pointer may be null or misaligned: the call then returns a status and does nothing. A pointer that
-// is neither points to a whole object, which nobody else uses during the call; so one controller is used by one thread at
-// a time, while different controllers know nothing of each other.
+// on every machine. A pointer that is null or misaligned is refused with a status. A pointer that is neither must point
+// to a whole object, which nobody else uses during the call: one controller is for one thread at a time, while different
+// controllers know nothing of each other.
 //
 // The world is right-handed, x east, y north.
 
@@ -21,8 +21,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The size of a GrnController in units of 8 bytes.
-#define GRN_CONTROLLER_WORDS 256
+// The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
+#define GRN_CONTROLLER_WORDS 255
 
 // How often grn_tick is to be called.
 #define GRN_TICKS_PER_SECOND 32
@@ -130,6 +130,9 @@ typedef int32_t GrnNumber;
 // To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
 // controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
 typedef struct GrnController {
+    // What is loaded; 0 for nothing. Written by the library only, as all of the storage.
+    uint64_t magic;
+    // The controller, if one is loaded.
     uint64_t opaque[GRN_CONTROLLER_WORDS];
 } GrnController;
 

@@ -26,8 +26,8 @@ pub use storage::{GRN_CONTROLLER_WORDS, GrnController, GrnNumber};
 
 use core::ffi::{CStr, c_char};
 use grn_core::blob::FORMAT_VERSION;
+use grn_core::robot::Percept;
 use pointer::{bytes, exclusive, shared, write};
-use storage::Brain;
 
 const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
     Ok(version) => version,
@@ -62,8 +62,7 @@ pub unsafe extern "C" fn grn_load(
         controller.vacate();
         // SAFETY: the caller gives null or a pointer to `length` bytes that nobody writes now.
         let blob = unsafe { bytes(blob, length) }?;
-        controller.fill(Brain::load(blob, number, robot)?);
-        Ok(())
+        storage::load(blob, number, robot, Some(controller))
     })
 }
 
@@ -77,7 +76,7 @@ pub unsafe extern "C" fn grn_check(blob: *const u8, length: usize, number: i32) 
     GrnStatus::of(|| {
         // SAFETY: the caller gives null or a pointer to `length` bytes that nobody writes now.
         let blob = unsafe { bytes(blob, length) }?;
-        Brain::load(blob, number, 0).map(drop)
+        storage::load(blob, number, 0, None)
     })
 }
 
@@ -98,10 +97,12 @@ pub unsafe extern "C" fn grn_tick(
         // SAFETY: the caller gives null or a pointer to a command that nobody else uses now.
         unsafe { write(command, GrnCommand::default()) }?;
         // SAFETY: the caller gives null or a pointer to storage that nobody else uses now.
-        let brain = unsafe { exclusive(controller) }?.brain_mut()?;
+        let controller = unsafe { exclusive(controller) }?;
         // SAFETY: the caller gives null or a pointer to a percept that nobody writes now.
-        let percept: &GrnPercept = unsafe { shared(percept) }?;
-        let answer = brain.tick(&percept.try_into()?).into();
+        let percept = unsafe { shared(percept) }?;
+        let mut perceived = Percept::default();
+        percept.tell(&mut perceived)?;
+        let answer = controller.tick(&perceived)?.into();
         // SAFETY: as above.
         unsafe { write(command, answer) }
     })
@@ -115,9 +116,9 @@ pub unsafe extern "C" fn grn_tick(
 pub unsafe extern "C" fn grn_morphogen(controller: *const GrnController, morphogen: *mut f32) -> GrnStatus {
     GrnStatus::of(|| {
         // SAFETY: the caller gives null or a pointer to storage that nobody writes now.
-        let brain = unsafe { shared(controller) }?.brain()?;
+        let controller = unsafe { shared(controller) }?;
         // SAFETY: the caller gives null or a pointer to a number that nobody else uses now.
-        unsafe { write(morphogen, brain.morphogen()) }
+        unsafe { write(morphogen, controller.morphogen()?) }
     })
 }
 
@@ -128,9 +129,9 @@ pub unsafe extern "C" fn grn_morphogen(controller: *const GrnController, morphog
 pub unsafe extern "C" fn grn_identity(controller: *const GrnController, identity: *mut u8) -> GrnStatus {
     GrnStatus::of(|| {
         // SAFETY: the caller gives null or a pointer to storage that nobody writes now.
-        let brain = unsafe { shared(controller) }?.brain()?;
+        let controller = unsafe { shared(controller) }?;
         // SAFETY: the caller gives null or a pointer to as many bytes that nobody else uses now.
-        unsafe { write(identity.cast::<[u8; GRN_IDENTITY_BYTES]>(), brain.identity()) }
+        unsafe { write(identity.cast::<[u8; GRN_IDENTITY_BYTES]>(), controller.identity()?) }
     })
 }
 

@@ -179,12 +179,15 @@ impl TryFrom<&GrnMessage> for Message {
     type Error = GrnStatus;
 
     fn try_from(message: &GrnMessage) -> Result<Self, GrnStatus> {
-        let reported = counted(&message.obstacles, message.obstacle_count).ok_or(GrnStatus::TooManyReported)?;
+        let mut obstacles = Vec::new();
+        fill(&mut obstacles, &message.obstacles, message.obstacle_count, GrnStatus::TooManyReported, |&report| {
+            Ok(report.into())
+        })?;
         Ok(Message {
             sender: message.sender,
             position: message.position.into(),
             target: (message.has_target != 0).then(|| message.target.into()),
-            obstacles: collected(reported, |&report| Ok(report.into()))?,
+            obstacles,
         })
     }
 }
@@ -206,21 +209,19 @@ impl From<Message> for GrnMessage {
     }
 }
 
-impl TryFrom<&GrnPercept> for Percept {
-    type Error = GrnStatus;
-
-    fn try_from(percept: &GrnPercept) -> Result<Self, GrnStatus> {
-        let targets = counted(&percept.targets, percept.target_count).ok_or(GrnStatus::TooManyTargets)?;
-        let obstacles = counted(&percept.obstacles, percept.obstacle_count).ok_or(GrnStatus::TooManyObstacles)?;
-        let heard = counted(&percept.heard, percept.heard_count).ok_or(GrnStatus::TooManyHeard)?;
-        Ok(Percept {
-            position: percept.position,
-            heading: percept.heading,
-            proximity: percept.proximity,
-            targets: collected(targets, |&target| Ok(target.into()))?,
-            obstacles: collected(obstacles, |&point| Ok(point.into()))?,
-            heard: collected(heard, |message| message.try_into())?,
-        })
+impl GrnPercept {
+    /// Fills in an empty percept, in place: on the chip's stack it is large.
+    pub(crate) fn tell(&self, percept: &mut Percept) -> Result<(), GrnStatus> {
+        percept.position = self.position;
+        percept.heading = self.heading;
+        percept.proximity = self.proximity;
+        fill(&mut percept.targets, &self.targets, self.target_count, GrnStatus::TooManyTargets, |&sighting| {
+            Ok(sighting.into())
+        })?;
+        fill(&mut percept.obstacles, &self.obstacles, self.obstacle_count, GrnStatus::TooManyObstacles, |&point| {
+            Ok(point.into())
+        })?;
+        fill(&mut percept.heard, &self.heard, self.heard_count, GrnStatus::TooManyHeard, |message| message.try_into())
     }
 }
 
@@ -231,20 +232,14 @@ impl From<Command> for GrnCommand {
     }
 }
 
-/// The first `count` items, if there are so many.
-fn counted<T>(items: &[T], count: u8) -> Option<&[T]> {
-    items.get(..usize::from(count))
-}
-
-/// The items converted; `N` is no smaller than their number.
-fn collected<C, T, const N: usize>(
-    items: &[C],
+/// Converts the first `count` of `items` into `list`; `excess` if there are not so many.
+fn fill<C, T, const N: usize>(
+    list: &mut Vec<T, N>,
+    items: &[C; N],
+    count: u8,
+    excess: GrnStatus,
     convert: impl Fn(&C) -> Result<T, GrnStatus>,
-) -> Result<Vec<T, N>, GrnStatus> {
-    let mut converted = Vec::new();
-    for item in items.iter().take(N) {
-        // Never full: `take` sees to it.
-        let _ = converted.push(convert(item)?);
-    }
-    Ok(converted)
+) -> Result<(), GrnStatus> {
+    let counted = items.get(..usize::from(count)).ok_or(excess)?;
+    counted.iter().try_for_each(|item| list.push(convert(item)?).map_err(|_| excess))
 }

@@ -1,12 +1,13 @@
 //! A controller in storage that its user owns.
 
 use crate::status::GrnStatus;
+use core::mem::MaybeUninit;
 use grn_core::blob::{Blob, Identity};
 use grn_core::robot::{Command, Controller, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
-/// The size of a GrnController in units of 8 bytes.
-pub const GRN_CONTROLLER_WORDS: usize = 256;
+/// The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
+pub const GRN_CONTROLLER_WORDS: usize = 255;
 
 /// What a controller computes with. Both follow the same law; each gives the same bits on every machine.
 #[repr(i32)]
@@ -24,97 +25,113 @@ pub enum GrnNumber {
 /// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
 #[repr(C)]
 pub struct GrnController {
-    opaque: [u64; GRN_CONTROLLER_WORDS],
-}
-
-/// What is in the storage of a loaded controller.
-#[repr(C)]
-struct Slot {
+    /// What is loaded; 0 for nothing. Written by the library only, as all of the storage.
     magic: u64,
-    brain: Brain,
+    /// The controller, if one is loaded.
+    opaque: [MaybeUninit<u64>; GRN_CONTROLLER_WORDS],
 }
 
-/// The first word of a loaded controller.
-const MAGIC: u64 = u64::from_le_bytes(*b"grn ctrl");
+/// A number type that controllers are loaded in.
+pub trait Number: Scalar {
+    /// What tells that the controller that is loaded computes with it.
+    const MAGIC: u64;
+}
 
-const _: () = assert!(size_of::<Slot>() <= size_of::<GrnController>(), "raise GRN_CONTROLLER_WORDS");
-const _: () = assert!(align_of::<Slot>() <= align_of::<GrnController>(), "GrnController needs more alignment");
+impl Number for f32 {
+    const MAGIC: u64 = u64::from_le_bytes(*b"grn f32 ");
+}
+
+impl Number for Q8_24 {
+    const MAGIC: u64 = u64::from_le_bytes(*b"grn 8.24");
+}
+
+impl Default for GrnController {
+    fn default() -> Self {
+        GrnController { magic: 0, opaque: [MaybeUninit::zeroed(); GRN_CONTROLLER_WORDS] }
+    }
+}
 
 impl GrnController {
     /// From now on no controller is loaded.
-    pub fn vacate(&mut self) {
-        let [magic, ..] = &mut self.opaque;
-        *magic = 0;
+    pub(crate) fn vacate(&mut self) {
+        self.magic = 0;
     }
 
     /// From now on this one is.
-    pub fn fill(&mut self, brain: Brain) {
-        let slot = (&raw mut self.opaque).cast::<Slot>();
-        // SAFETY: a slot fits in size and alignment (asserted above), and `self` is borrowed exclusively.
-        unsafe { slot.write(Slot { magic: MAGIC, brain }) };
+    pub(crate) fn fill<S: Number>(&mut self, controller: Controller<S>) {
+        const {
+            assert!(
+                size_of::<Controller<S>>() <= GRN_CONTROLLER_WORDS * size_of::<u64>(),
+                "raise GRN_CONTROLLER_WORDS"
+            );
+            assert!(align_of::<Controller<S>>() <= align_of::<u64>(), "a controller needs more alignment");
+        }
+        // SAFETY: a controller fits in size and alignment, and `self` is borrowed exclusively.
+        unsafe { (&raw mut self.opaque).cast::<Controller<S>>().write(controller) };
+        self.magic = S::MAGIC;
     }
 
-    /// The controller that is loaded.
-    pub fn brain(&self) -> Result<&Brain, GrnStatus> {
-        self.check()?;
-        let slot = (&raw const self.opaque).cast::<Slot>();
-        // SAFETY: the magic is there, so `fill` has written a slot.
-        Ok(unsafe { &(*slot).brain })
+    /// The controller that is loaded, if it computes with this number type.
+    pub(crate) fn get<S: Number>(&self) -> Option<&Controller<S>> {
+        let controller = (&raw const self.opaque).cast::<Controller<S>>();
+        // SAFETY: with this magic `fill` has written such a controller.
+        (self.magic == S::MAGIC).then(|| unsafe { &*controller })
     }
 
-    /// The controller that is loaded, to be ticked.
-    pub fn brain_mut(&mut self) -> Result<&mut Brain, GrnStatus> {
-        self.check()?;
-        let slot = (&raw mut self.opaque).cast::<Slot>();
-        // SAFETY: the magic is there, so `fill` has written a slot, and `self` is borrowed exclusively.
-        Ok(unsafe { &mut (*slot).brain })
+    /// The same, to be ticked.
+    pub(crate) fn get_mut<S: Number>(&mut self) -> Option<&mut Controller<S>> {
+        let controller = (&raw mut self.opaque).cast::<Controller<S>>();
+        // SAFETY: with this magic `fill` has written such a controller, and `self` is borrowed exclusively.
+        (self.magic == S::MAGIC).then(|| unsafe { &mut *controller })
     }
 
-    fn check(&self) -> Result<(), GrnStatus> {
-        let [magic, ..] = self.opaque;
-        if magic == MAGIC { Ok(()) } else { Err(GrnStatus::NotLoaded) }
+    pub(crate) fn tick(&mut self, percept: &Percept) -> Result<Command, GrnStatus> {
+        if let Some(controller) = self.get_mut::<f32>() {
+            Ok(tick(controller, percept))
+        } else if let Some(controller) = self.get_mut::<Q8_24>() {
+            Ok(tick(controller, percept))
+        } else {
+            Err(GrnStatus::NotLoaded)
+        }
+    }
+
+    pub(crate) fn morphogen(&self) -> Result<f32, GrnStatus> {
+        let float = || self.get::<f32>().map(Controller::morphogen);
+        let fixed = || self.get::<Q8_24>().map(|controller| controller.morphogen().to_f32());
+        float().or_else(fixed).ok_or(GrnStatus::NotLoaded)
+    }
+
+    pub(crate) fn identity(&self) -> Result<Identity, GrnStatus> {
+        let float = || self.get::<f32>().map(Controller::identity);
+        let fixed = || self.get::<Q8_24>().map(Controller::identity);
+        float().or_else(fixed).ok_or(GrnStatus::NotLoaded)
     }
 }
 
-/// A controller in either number type.
-pub enum Brain {
-    F32(Controller<f32>),
-    Q8_24(Controller<Q8_24>),
-}
-
-impl Brain {
-    pub fn load(bytes: &[u8], number: i32, robot: u8) -> Result<Self, GrnStatus> {
-        const F32: i32 = GrnNumber::F32 as i32;
-        const Q: i32 = GrnNumber::Q8_24 as i32;
-        match number {
-            F32 => controller(bytes, robot).map(Brain::F32),
-            Q => controller(bytes, robot).map(Brain::Q8_24),
-            _ => Err(GrnStatus::UnknownNumber),
-        }
-    }
-
-    pub fn tick(&mut self, percept: &Percept) -> Command {
-        match self {
-            Brain::F32(controller) => controller.tick(percept),
-            Brain::Q8_24(controller) => controller.tick(percept),
-        }
-    }
-
-    pub fn morphogen(&self) -> f32 {
-        match self {
-            Brain::F32(controller) => controller.morphogen(),
-            Brain::Q8_24(controller) => controller.morphogen().to_f32(),
-        }
-    }
-
-    pub fn identity(&self) -> Identity {
-        match self {
-            Brain::F32(controller) => controller.identity(),
-            Brain::Q8_24(controller) => controller.identity(),
-        }
+/// Makes a controller from a blob and, if there is storage for it, keeps it there.
+pub fn load(bytes: &[u8], number: i32, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
+    const F32: i32 = GrnNumber::F32 as i32;
+    const Q: i32 = GrnNumber::Q8_24 as i32;
+    let blob = Blob::decode(bytes)?;
+    match number {
+        F32 => build::<f32>(&blob, robot, storage),
+        Q => build::<Q8_24>(&blob, robot, storage),
+        _ => Err(GrnStatus::UnknownNumber),
     }
 }
 
-fn controller<S: Scalar>(bytes: &[u8], robot: u8) -> Result<Controller<S>, GrnStatus> {
-    Ok(Controller::new(&Blob::decode(bytes)?, robot)?)
+// Not inlined, one function a number type: so the stack holds what one of them needs, not both at once.
+
+#[inline(never)]
+fn build<S: Number>(blob: &Blob, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
+    let controller = Controller::<S>::new(blob, robot)?;
+    if let Some(storage) = storage {
+        storage.fill(controller);
+    }
+    Ok(())
+}
+
+#[inline(never)]
+fn tick<S: Number>(controller: &mut Controller<S>, percept: &Percept) -> Command {
+    controller.tick(percept)
 }

@@ -17,7 +17,8 @@ use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::dynamics::{Expression, Step};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::robot::{Controller, LoadError};
-use grn_core::scalar::Scalar;
+use grn_core::scalar::{Dual, Scalar};
+use heapless::Vec;
 use walk::Walk;
 
 /// How many random networks are exercised besides the printed models.
@@ -133,14 +134,16 @@ fn settle<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
 }
 
 /// RK4 steps under constant inputs, as a controller does them.
-pub fn advance<S: Scalar, const N: usize>(
+fn advance<S: Scalar, const N: usize>(
     expression: &mut Expression<S, N>,
     network: &Network<S, N>,
     [x1, x2]: [S; 2],
     h: Step,
     steps: u8,
 ) {
-    expression.advance(network, x1, x2, h, steps);
+    let mut rest = Vec::new();
+    network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+    expression.advance(network, [x1, x2], &rest, h, steps);
 }
 
 fn integrate<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {

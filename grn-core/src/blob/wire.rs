@@ -46,6 +46,7 @@ struct WireGene {
 }
 
 impl<const N: usize> Payload<N> {
+    #[inline(never)]
     pub(super) fn read(bytes: &[u8]) -> Result<Self, BlobError> {
         let ((convention, genes), _): ((u8, u32), _) =
             postcard::take_from_bytes(bytes).map_err(|_| BlobError::Malformed)?;
@@ -87,6 +88,7 @@ impl<const N: usize> Payload<N> {
         }
     }
 
+    #[inline(never)]
     pub(super) fn into_blob(self) -> Result<Blob<N>, BlobError> {
         let mut genes: Vec<Gene<f32>, N> = Vec::new();
         for (index, gene) in self.genes.iter().enumerate() {

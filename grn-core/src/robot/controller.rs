@@ -12,11 +12,12 @@ use crate::field::{Field, Morphogens};
 use crate::geometry::{Point, Vector};
 use crate::network::{DEFAULT_GENES, Network};
 use crate::pattern::{NoPattern, Pattern};
-use crate::scalar::Scalar;
+use crate::scalar::{Dual, Scalar};
 use core::fmt;
+use heapless::Vec;
 
-/// A robot speaks every so many ticks, each in its own turn.
-const BROADCAST_PERIOD: u32 = 4;
+/// A robot speaks every so many ticks, a quarter of a second, each in its own turn. In that time it moves 3 cm.
+const BROADCAST_PERIOD: u32 = 8;
 /// The most RK4 steps in one tick.
 const MAX_STEPS_PER_TICK: f32 = 64.0;
 
@@ -133,10 +134,13 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let known = targets.iter().map(|target| target.position);
         let morphogens = self.field.at(here, known, self.knowledge.obstacles());
         let Morphogens { x1, x2, .. } = morphogens;
-        self.expression.advance(&self.network, x1, x2, self.step, self.steps_per_tick);
+        let mut rest = Vec::new();
+        self.network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+        let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
+        self.expression.advance(&self.network, [x1, x2], &rest, self.step, self.steps_per_tick);
         let bearing = Bearing {
             error: self.pattern.error(self.expression.morphogen(&self.network)),
-            gradient: self.pattern.error_gradient(&self.network, &morphogens),
+            gradient: self.pattern.error_gradient(slopes, &morphogens),
         };
         // The pattern here is that around another target: it does not tell the way to the own one.
         let bearing = (own.target == nearest.target).then_some(&bearing);

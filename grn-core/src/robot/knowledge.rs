@@ -2,21 +2,17 @@
 
 use super::epuck2::TICKS_PER_SECOND;
 use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
-use super::obstacles::{KnownObstacle, ObstacleMap};
+use super::neighbours::{Neighbour, Neighbours};
+use super::obstacles::ObstacleMap;
 use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
 use crate::bounded::filled;
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
 use heapless::Vec;
 
-/// The most neighbours kept in mind: the nearest ones.
-pub const MAX_NEIGHBOURS: usize = 8;
-
 /// A target nobody has seen for 5 s is forgotten; one sighting more than 255 ticks old cannot be reported.
 const FORGET_TARGET_TICKS: u8 = 5 * TICKS_PER_SECOND as u8;
-/// A neighbour not heard for 1 s is forgotten within another quarter.
-const FORGET_NEIGHBOUR_TICKS: u32 = TICKS_PER_SECOND as u32;
-/// Obstacle ages are counted in units of 8 ticks.
+/// Obstacle ages are counted in units of 8 ticks; that often neighbours are forgotten, too.
 const OBSTACLE_AGE_UNIT: u32 = 8;
 
 /// Everything known, in world metres, extrapolated to the current tick.
@@ -24,7 +20,7 @@ const OBSTACLE_AGE_UNIT: u32 = 8;
 pub struct Knowledge<S> {
     targets: Vec<KnownTarget<S>, MAX_TARGETS>,
     obstacles: ObstacleMap<S>,
-    neighbours: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
+    neighbours: Neighbours<S>,
     tick: u32,
 }
 
@@ -38,18 +34,6 @@ pub struct KnownTarget<S> {
     /// Estimated velocity, metres per second.
     pub velocity: Vector<S>,
     age: u8,
-}
-
-/// Another robot nearby.
-#[derive(Clone, Copy, Debug)]
-pub struct Neighbour<S> {
-    robot: u8,
-    /// Where it was when last heard.
-    pub position: Point<S>,
-    /// How far away it was then, squared, mm².
-    square: u32,
-    /// The tick.
-    heard: u32,
 }
 
 /// The squared distance between two places, mm², at most what a `u32` holds (65 m).
@@ -79,7 +63,7 @@ fn millimetres<S: Scalar>(position: Point<S>) -> Millimetres {
 
 impl<S: Scalar> Knowledge<S> {
     pub fn new() -> Self {
-        Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Vec::new(), tick: 0 }
+        Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Neighbours::new(), tick: 0 }
     }
 
     pub fn targets(&self) -> &[KnownTarget<S>] {
@@ -92,7 +76,7 @@ impl<S: Scalar> Knowledge<S> {
     }
 
     pub fn neighbours(&self) -> &[Neighbour<S>] {
-        &self.neighbours
+        self.neighbours.known()
     }
 
     /// Takes one tick's percept in; `here` is the robot's own position.
@@ -103,24 +87,23 @@ impl<S: Scalar> Knowledge<S> {
             self.see_target(*sighting);
         }
         for &position in &percept.obstacles {
-            self.obstacles.learn(KnownObstacle { position, age: 0 });
+            self.obstacles.learn(&ObstacleReport { position, age: 0 });
         }
         for message in &percept.heard {
             if let Some(report) = &message.target {
                 self.hear_of_target(report);
             }
-            for &ObstacleReport { position, age } in &message.obstacles {
-                self.obstacles.learn(KnownObstacle { position, age });
+            for report in &message.obstacles {
+                self.obstacles.learn(report);
             }
-            self.meet(message.sender, message.position, here);
+            self.neighbours.meet(message.sender, message.position, here, self.tick);
         }
     }
 
     fn grow_older(&mut self, here: Millimetres) {
         if self.tick.is_multiple_of(OBSTACLE_AGE_UNIT) {
             self.obstacles.grow_older(here);
-            let now = self.tick;
-            self.neighbours.retain(|known| now.wrapping_sub(known.heard) < FORGET_NEIGHBOUR_TICKS);
+            self.neighbours.forget(self.tick);
         }
         self.tick = self.tick.wrapping_add(1);
         let tick = S::from_ratio(1, i32::from(TICKS_PER_SECOND));
@@ -173,23 +156,6 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    fn meet(&mut self, robot: u8, place: Millimetres, here: Millimetres) {
-        let square = squared_distance(place, here);
-        let met = Neighbour { robot, position: metres(place), square, heard: self.tick };
-        if let Some(known) = self.neighbours.iter_mut().find(|known| known.robot == robot) {
-            *known = met;
-        } else if !self.neighbours.is_full() {
-            let _ = self.neighbours.push(met);
-        } else {
-            let (farthest, largest) = largest_of(self.neighbours.iter().map(|known| known.square));
-            if square < largest
-                && let Some(farthest) = self.neighbours.get_mut(farthest)
-            {
-                *farthest = met;
-            }
-        }
-    }
-
     /// What to tell the others: one target in turn, and obstacle points in turn, own sightings first.
     pub fn report(&self, turn: u32, percept: &Percept) -> (Option<TargetReport>, Vec<ObstacleReport, 4>) {
         let target = nth_in_turn(&self.targets, turn).map(|known| TargetReport {
@@ -203,8 +169,7 @@ impl<S: Scalar> Knowledge<S> {
         let turns = (0..MAX_REPORTED_OBSTACLES as u32).map(|k| first.wrapping_add(k));
         let obstacles = if percept.obstacles.is_empty() {
             let count = self.obstacles.known().len();
-            let known = turns.take(count).filter_map(|turn| nth_in_turn(self.obstacles.known(), turn));
-            filled(known.map(|known| ObstacleReport { position: known.position, age: known.age }))
+            filled(turns.take(count).filter_map(|turn| nth_in_turn(self.obstacles.known(), turn)).copied())
         } else {
             let count = percept.obstacles.len();
             let seen = turns.take(count).filter_map(|turn| nth_in_turn(&percept.obstacles, turn));

@@ -11,6 +11,7 @@ mod knowledge;
 pub mod link;
 pub mod message;
 mod motion;
+mod neighbours;
 mod obstacles;
 pub mod percept;
 pub mod slots;

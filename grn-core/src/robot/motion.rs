@@ -30,7 +30,8 @@
 //! the target is not believed: there ∇φ is small, down to a few units of Q8.24, and obstacles may outweigh the target.
 //! The robot then heads for its target until the pattern can be sensed.
 
-use super::knowledge::{KnownTarget, Neighbour};
+use super::knowledge::KnownTarget;
+use super::neighbours::Neighbour;
 use crate::blob::Gains;
 use crate::geometry::{Point, Vector};
 use crate::pattern::newton_step;

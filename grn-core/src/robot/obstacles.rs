@@ -2,6 +2,7 @@
 //! of 32 mm: a point seen again and again, a few millimetres off, must not crowd out the others.
 
 use super::knowledge::{largest_of, metres, squared_distance};
+use super::message::ObstacleReport;
 use super::percept::Millimetres;
 use crate::bounded::filled;
 use crate::geometry::Point;
@@ -19,21 +20,13 @@ const CELL_LOG2: u32 = 5;
 /// Places to look first, several times as many as points.
 const SLOTS: usize = 128;
 
-/// A point and when it was seen.
-#[derive(Clone, Copy, Debug)]
-pub struct KnownObstacle {
-    pub position: Millimetres,
-    /// Units of 8 ticks since it was seen.
-    pub age: u8,
-}
-
 /// The known points. Dozens arrive in a tick, nearly all of them known already.
 ///
 /// Who is nearer is decided in whole millimetres, which messages are in anyway, and from where the robot was when ages
 /// were last counted: in a quarter of a second it moves 36 mm at most, less than [`SLACK`].
 #[derive(Clone, Debug)]
 pub struct ObstacleMap<S> {
-    known: Vec<KnownObstacle, MAX_OBSTACLES>,
+    known: Vec<ObstacleReport, MAX_OBSTACLES>,
     /// The points, in metres, that can be the nearest until distances are measured again.
     near: Vec<Point<S>, MAX_OBSTACLES>,
     /// By a hash of the cell: which known point to compare with first.
@@ -55,7 +48,7 @@ impl<S: Scalar> ObstacleMap<S> {
         }
     }
 
-    pub fn known(&self) -> &[KnownObstacle] {
+    pub fn known(&self) -> &[ObstacleReport] {
         &self.known
     }
 
@@ -77,10 +70,7 @@ impl<S: Scalar> ObstacleMap<S> {
     }
 
     /// Takes a point in, if it is not forgotten and nearer than one of the known.
-    pub fn learn(&mut self, told: KnownObstacle) {
-        if told.age > FORGET_UNITS {
-            return;
-        }
+    pub fn learn(&mut self, told: &ObstacleReport) {
         let cell = cell(told.position);
         // Multiplicative hashing: the upper bits of the product depend on all of both coordinates.
         let slot = (cell.wrapping_mul(0x9e37_79b1) >> (u32::BITS - SLOTS.ilog2())) as usize;
@@ -91,7 +81,8 @@ impl<S: Scalar> ObstacleMap<S> {
             known.age = known.age.min(told.age);
             return;
         }
-        if self.known.is_full() && squared_distance(told.position, self.here) > self.largest {
+        let too_far = self.known.is_full() && squared_distance(told.position, self.here) > self.largest;
+        if too_far || told.age > FORGET_UNITS {
             return;
         }
         if let Some(index) = self.place(told)
@@ -102,17 +93,17 @@ impl<S: Scalar> ObstacleMap<S> {
     }
 
     /// Where the point is kept now, if it is.
-    fn place(&mut self, told: KnownObstacle) -> Option<usize> {
+    fn place(&mut self, told: &ObstacleReport) -> Option<usize> {
         let cell = cell(told.position);
         if let Some(index) = self.known.iter().position(|known| self::cell(known.position) == cell) {
             let known = self.known.get_mut(index)?;
             known.age = known.age.min(told.age);
             return Some(index);
         }
-        let index = if self.known.push(told).is_ok() {
+        let index = if self.known.push(*told).is_ok() {
             self.known.len() - 1
         } else if squared_distance(told.position, self.here) < self.largest {
-            *self.known.get_mut(self.farthest)? = told;
+            *self.known.get_mut(self.farthest)? = *told;
             self.farthest
         } else {
             return None;
@@ -134,17 +125,18 @@ impl<S: Scalar> ObstacleMap<S> {
     }
 }
 
+/// The square a point is in: both coordinates without the bits that tell where in it.
 fn cell(Millimetres { x, y }: Millimetres) -> u32 {
-    let [x, y] = [x, y].map(|mm| u32::from((mm >> CELL_LOG2) as u16));
-    (x << 16) | y
+    const MASK: u32 = 0x0001_0001 * ((u16::MAX >> CELL_LOG2) << CELL_LOG2) as u32;
+    ((u32::from(y as u16) << 16) | u32::from(x as u16)) & MASK
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn told(x: i16, age: u8) -> KnownObstacle {
-        KnownObstacle { position: Millimetres { x, y: 5 }, age }
+    fn told(x: i16, age: u8) -> ObstacleReport {
+        ObstacleReport { position: Millimetres { x, y: 5 }, age }
     }
 
     #[test]
@@ -152,8 +144,8 @@ mod tests {
         let mut map = ObstacleMap::<f32>::new();
         map.grow_older(Millimetres { x: 0, y: 5 });
         for x in (0..100).rev().chain(0..100) {
-            map.learn(told(x * 32 + 3, 3));
-            map.learn(told(x * 32 + 9, 3));
+            map.learn(&told(x * 32 + 3, 3));
+            map.learn(&told(x * 32 + 9, 3));
         }
         let mut kept: std::vec::Vec<i16> = map.known().iter().map(|known| known.position.x).collect();
         kept.sort_unstable();
@@ -168,10 +160,10 @@ mod tests {
     fn the_fresher_age_stands_until_it_is_forgotten() {
         let mut map = ObstacleMap::<f32>::new();
         let here = Millimetres::default();
-        map.learn(told(1, 7));
-        map.learn(told(1, 2));
-        map.learn(told(1, 9));
-        map.learn(told(99, FORGET_UNITS + 1));
+        map.learn(&told(1, 7));
+        map.learn(&told(1, 2));
+        map.learn(&told(1, 9));
+        map.learn(&told(99, FORGET_UNITS + 1));
         assert_eq!(map.known().iter().map(|known| known.age).collect::<std::vec::Vec<_>>(), [2]);
         for _ in 2..FORGET_UNITS {
             map.grow_older(here);

@@ -1,9 +1,11 @@
 //! `grn simulate`.
 
 use super::{Answer, Failure, about, interrupt, print, print_json};
+#[cfg(unix)]
+use crate::emulation::{self, Emulation};
 use crate::figures;
 use crate::files::{self, read_blob};
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Number, Simulation};
+use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Number, Simulation, SimulationError};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
@@ -15,6 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Robots of a simulation when nothing else is said.
 pub const DEFAULT_ROBOTS: usize = 12;
+/// Robots in QEMU when nothing else is said.
+const DEFAULT_EMULATED: usize = 4;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
 pub const DEFAULT_SPEED: f64 = 0.03;
 
@@ -39,6 +43,15 @@ pub struct Arguments {
     /// Number type the robots compute in.
     #[arg(long, default_value = "f32")]
     number: Number,
+    /// Where controllers run: all in this process, or some in QEMU, from the image that is flashed.
+    #[arg(long, default_value = "native")]
+    target: Target,
+    /// How many of the robots are emulated with --target qemu.
+    #[arg(long, default_value_t = DEFAULT_EMULATED)]
+    emulated: usize,
+    /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
+    #[arg(long, value_name = "ELF")]
+    image: Option<PathBuf>,
     /// Folder for trace.csv, trace.bin, metrics.json and trace.svg.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -46,6 +59,15 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Target {
+    Native,
+    Qemu,
+}
+
+/// Where `cargo xtask target` leaves images.
+const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let mut blob = read_blob(&arguments.blob)?;
@@ -61,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         ..usual_config(&blob, arguments.robots)
     };
     let stop = interrupt::watch()?;
-    let simulation = watched(&blob, &scenario, config, arguments.number, stop).map_err(|failure| match failure {
+    let simulation = simulated(arguments, &blob, &scenario, config, stop).map_err(|failure| match failure {
         Failure::Input(message) => Failure::Input(format!("{}: {message}", arguments.blob.display())),
         other => other,
     })?;
@@ -74,6 +96,32 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         print(table(&simulation))?;
     }
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
+}
+
+fn simulated(
+    arguments: &Arguments,
+    blob: &Blob,
+    scenario: &Scenario,
+    config: SwarmConfig,
+    stop: &AtomicBool,
+) -> Result<Simulation, Failure> {
+    let number = arguments.number;
+    match arguments.target {
+        Target::Native => watched(blob, scenario, config, number, stop),
+        #[cfg(unix)]
+        Target::Qemu => {
+            let image = arguments.image.clone().unwrap_or_else(|| {
+                Path::new(IMAGES).join(match number {
+                    Number::F32 => "robot-f32",
+                    Number::Q824 => "robot-q8_24",
+                })
+            });
+            let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
+            with_progress(stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
+        }
+        #[cfg(not(unix))]
+        Target::Qemu => Err(Failure::Input("--target qemu needs Unix sockets, which this system has not".into())),
+    }
 }
 
 /// The usual swarm for a blob: two mother robots, or one if there is only one robot.
@@ -95,9 +143,16 @@ pub fn watched(
     number: Number,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
+    with_progress(stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
+}
+
+fn with_progress(
+    stop: &AtomicBool,
+    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
+) -> Result<Simulation, Failure> {
     let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} % · {eta} left");
     let bar = ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    let result = simulation::simulate(blob, scenario, config, number, |share| {
+    let result = simulate(&mut |share| {
         bar.set_position((share * 1000.0) as u64);
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });

@@ -28,10 +28,18 @@ pub mod uart {
     const CONTROL: Register = Register::at(0x4001_100c);
     const RECEIVED: u32 = 1 << 5;
     const TRANSMIT_EMPTY: u32 = 1 << 7;
-    const ENABLE: u32 = 1 << 13 | 1 << 3 | 1 << 2;
+    const ENABLE: u32 = 1 << 13 | 1 << 5 | 1 << 3 | 1 << 2;
+
+    /// USART1 is interrupt 37: bit 5 of the second word of these registers of the interrupt controller.
+    const INTERRUPT_ENABLE: Register = Register::at(0xe000_e104);
+    const INTERRUPT_CLEAR: Register = Register::at(0xe000_e284);
+    const INTERRUPT: u32 = 1 << 5;
 
     /// Switches sender and receiver on. Bytes that arrive before are lost: say something first.
     pub fn start() {
+        // SAFETY: an interrupt only wakes the processor; with interrupts masked it is not served.
+        unsafe { core::arch::asm!("cpsid i", options(nomem, nostack)) };
+        INTERRUPT_ENABLE.write(INTERRUPT);
         CONTROL.write(ENABLE);
     }
 
@@ -40,12 +48,15 @@ pub mod uart {
         (STATUS.read() & RECEIVED != 0).then(|| DATA.read() as u8)
     }
 
-    /// Waits for the next byte.
+    /// Waits for the next byte, asleep.
     pub fn read() -> u8 {
         loop {
+            INTERRUPT_CLEAR.write(INTERRUPT);
             if let Some(byte) = poll() {
                 return byte;
             }
+            // SAFETY: it waits for an interrupt to be pending, that of a byte among them.
+            unsafe { core::arch::asm!("wfi", options(nomem, nostack)) };
         }
     }
 

@@ -1,0 +1,277 @@
+//! Whatever can be checked is refused with a status whose text says what to do, and nothing happens.
+#![allow(clippy::unwrap_used)]
+
+use grn_c::*;
+use grn_core::blob::{Blob, MAGIC, max_encoded_size};
+use grn_core::field::Kernel;
+use grn_core::motif::Motif;
+use grn_core::network::{Gene, Network, Source};
+use std::ffi::{CStr, c_char};
+use std::path::Path;
+use std::ptr::{null, null_mut};
+use std::{fs, slice};
+
+const SIZE: usize = size_of::<GrnController>();
+const F32: i32 = GrnNumber::F32 as i32;
+
+fn model() -> Vec<u8> {
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/nand-xnor.grn")).unwrap()
+}
+
+fn load(storage: &mut GrnController, blob: &[u8]) -> GrnStatus {
+    unsafe { grn_load(storage, SIZE, blob.as_ptr(), blob.len(), F32, 1) }
+}
+
+fn loaded() -> GrnController {
+    let mut storage = GrnController::default();
+    assert_eq!(load(&mut storage, &model()), GrnStatus::Ok);
+    storage
+}
+
+fn text(pointer: *const c_char) -> &'static str {
+    unsafe { CStr::from_ptr(pointer) }.to_str().unwrap()
+}
+
+fn tick(storage: &mut GrnController, percept: &GrnPercept) -> GrnCommand {
+    let mut command = GrnCommand::default();
+    assert_eq!(unsafe { grn_tick(storage, percept, &mut command) }, GrnStatus::Ok);
+    command
+}
+
+/// A command nobody would mistake for that of a robot at rest.
+const WILD: GrnCommand = GrnCommand {
+    left: 77,
+    right: -77,
+    has_broadcast: 1,
+    broadcast: GrnMessage {
+        sender: 7,
+        position: GrnMillimetres { x: 0, y: 0 },
+        has_target: 0,
+        target: GrnTargetReport { target: 0, position: GrnMillimetres { x: 0, y: 0 }, velocity: [0; 2], age: 0 },
+        obstacle_count: 0,
+        obstacles: [GrnObstacleReport { position: GrnMillimetres { x: 0, y: 0 }, age: 0 }; GRN_MAX_REPORTED_OBSTACLES],
+    },
+};
+
+#[test]
+fn null_pointers_are_refused() {
+    let (blob, mut storage) = (model(), loaded());
+    let (percept, mut command) = (GrnPercept::default(), GrnCommand::default());
+    let refused = unsafe {
+        [
+            grn_load(null_mut(), SIZE, blob.as_ptr(), blob.len(), F32, 1),
+            grn_check(null(), blob.len(), F32),
+            grn_check(null(), 0, F32),
+            grn_tick(null_mut(), &percept, &mut command),
+            grn_tick(&mut storage, null(), &mut command),
+            grn_tick(&mut storage, &percept, null_mut()),
+            grn_morphogen(null(), &mut 0.0),
+            grn_morphogen(&storage, null_mut()),
+            grn_identity(null(), [0; GRN_IDENTITY_BYTES].as_mut_ptr()),
+            grn_identity(&storage, null_mut()),
+            grn_load(&mut storage, SIZE, null(), blob.len(), F32, 1),
+        ]
+    };
+    assert_eq!(refused, [GrnStatus::NullPointer; 11]);
+}
+
+#[test]
+fn misaligned_pointers_are_refused() {
+    let (blob, mut storage) = (model(), loaded());
+    let percept = GrnPercept::default();
+    let mut room = [0_u64; SIZE / 8 + 1];
+    let crooked = unsafe { room.as_mut_ptr().cast::<u8>().add(1) };
+    let refused = unsafe {
+        [
+            grn_load(crooked.cast(), SIZE, blob.as_ptr(), blob.len(), F32, 1),
+            grn_tick(crooked.cast(), &percept, &mut GrnCommand::default()),
+            grn_tick(&mut storage, crooked.cast(), &mut GrnCommand::default()),
+            grn_tick(&mut storage, &percept, crooked.cast()),
+            grn_morphogen(&storage, crooked.cast()),
+        ]
+    };
+    assert_eq!(refused, [GrnStatus::Misaligned; 5]);
+    // Bytes have no alignment.
+    let crooked_blob = unsafe { slice::from_raw_parts_mut(crooked, blob.len()) };
+    crooked_blob.copy_from_slice(&blob);
+    assert_eq!(load(&mut storage, crooked_blob), GrnStatus::Ok);
+}
+
+#[test]
+fn storage_too_small_or_never_loaded_is_refused() {
+    let blob = model();
+    let mut storage = GrnController::default();
+    let small = unsafe { grn_load(&mut storage, SIZE - 1, blob.as_ptr(), blob.len(), F32, 1) };
+    assert_eq!(small, GrnStatus::StorageTooSmall);
+    let mut command = WILD;
+    let status = unsafe { grn_tick(&mut storage, &GrnPercept::default(), &mut command) };
+    assert_eq!((status, command), (GrnStatus::NotLoaded, GrnCommand::default()));
+    assert_eq!(unsafe { grn_morphogen(&storage, &mut 0.0) }, GrnStatus::NotLoaded);
+    assert_eq!(unsafe { grn_identity(&storage, [0; 8].as_mut_ptr()) }, GrnStatus::NotLoaded);
+    for number in [0, 3, -1, i32::MAX] {
+        assert_eq!(unsafe { grn_check(blob.as_ptr(), blob.len(), number) }, GrnStatus::UnknownNumber);
+    }
+}
+
+#[test]
+fn a_refused_blob_leaves_no_controller() {
+    let mut storage = loaded();
+    assert_eq!(load(&mut storage, b"nonsense"), GrnStatus::NotABlob);
+    let status = unsafe { grn_tick(&mut storage, &GrnPercept::default(), &mut GrnCommand::default()) };
+    assert_eq!(status, GrnStatus::NotLoaded);
+    assert_eq!(load(&mut storage, &model()), GrnStatus::Ok);
+}
+
+#[test]
+fn counts_beyond_the_arrays_are_refused_and_change_nothing() {
+    type Spoil = fn(&mut GrnPercept);
+    let spoils: [(Spoil, GrnStatus); 6] = [
+        (|percept| percept.target_count = 5, GrnStatus::TooManyTargets),
+        (|percept| percept.obstacle_count = 9, GrnStatus::TooManyObstacles),
+        (|percept| percept.heard_count = 9, GrnStatus::TooManyHeard),
+        (|percept| percept.heard_count = 255, GrnStatus::TooManyHeard),
+        (
+            |percept| {
+                percept.heard_count = 1;
+                percept.heard[0].obstacle_count = 5;
+            },
+            GrnStatus::TooManyReported,
+        ),
+        (
+            |percept| {
+                percept.heard_count = 8;
+                percept.heard[7].obstacle_count = 255;
+            },
+            GrnStatus::TooManyReported,
+        ),
+    ];
+    let mut storage = loaded();
+    for (spoil, expected) in spoils {
+        let mut percept = GrnPercept::default();
+        spoil(&mut percept);
+        let mut command = WILD;
+        assert_eq!(unsafe { grn_tick(&mut storage, &percept, &mut command) }, expected);
+        assert_eq!(command, GrnCommand::default(), "the robot stops");
+    }
+    // Whose turn it is to speak would tell, had any of these been a tick. What is beyond the counts does not matter.
+    let mut percept = GrnPercept { target_count: 1, ..GrnPercept::default() };
+    let mut undisturbed = loaded();
+    for _ in 0..8 {
+        percept.heard[0].obstacle_count = 0;
+        let expected = tick(&mut undisturbed, &percept);
+        percept.heard[0].obstacle_count = 255;
+        assert_eq!(tick(&mut storage, &percept), expected);
+    }
+}
+
+/// A network of `N` genes as a blob.
+fn blob_of<const N: usize>() -> Vec<u8> {
+    let gene = |index: u8| Gene {
+        motif: Motif::Pos,
+        inputs: [if index == 0 { Source::X1 } else { Source::Gene(index - 1) }].into_iter().collect(),
+        theta: 0.5,
+    };
+    let small = Blob::<32>::decode(&model()).unwrap();
+    let blob = Blob::<N> {
+        network: Network::new(1.0, (0..N as u8).map(gene)).unwrap(),
+        field: small.field,
+        level_fraction: small.level_fraction,
+        scale: small.scale,
+        step: small.step,
+        time_scale: small.time_scale,
+        gains: small.gains,
+    };
+    blob.encode(&mut vec![0; max_encoded_size(N)]).unwrap().to_vec()
+}
+
+fn changed(at: usize, value: u8) -> Vec<u8> {
+    let mut blob = model();
+    blob[at] = value;
+    blob
+}
+
+/// The blob with other parameters.
+fn tuned(tune: impl FnOnce(&mut Blob)) -> Vec<u8> {
+    let mut blob = Blob::<32>::decode(&model()).unwrap();
+    tune(&mut blob);
+    blob.encode(&mut [0; max_encoded_size(32)]).unwrap().to_vec()
+}
+
+#[test]
+fn bad_blobs_are_refused_each_with_what_to_do() {
+    let good = model();
+    let blind = tuned(|blob| {
+        let gene = Gene { motif: Motif::Pos, inputs: [Source::X2].into_iter().collect(), theta: 1.0 };
+        blob.network = Network::new(1.0, [gene]).unwrap();
+    });
+    // So steep that even the last trace of a target is inside.
+    let boundless = tuned(|blob| {
+        let gene = |source, theta| Gene { motif: Motif::Pos, inputs: [source].into_iter().collect(), theta };
+        let genes = [gene(Source::X1, 0.0), gene(Source::Gene(0), 0.5), gene(Source::Gene(1), 0.5)];
+        blob.network = Network::new(16.0, genes).unwrap();
+        blob.field.kernel = Kernel::Exponential;
+        blob.level_fraction = 0.01;
+    });
+    let cases = [
+        (good[..10].to_vec(), GrnStatus::BlobTruncated, "cut short: copy or upload it again"),
+        (Vec::new(), GrnStatus::BlobTruncated, "cut short: copy or upload it again"),
+        (good[..40].to_vec(), GrnStatus::BlobLength, "pass its exact length"),
+        ([&good[..], &[0]].concat(), GrnStatus::BlobLength, "pass its exact length"),
+        (vec![0xff; 64], GrnStatus::NotABlob, "not a GRN blob"),
+        (changed(4, 0), GrnStatus::BlobTooOld, "write it again with this library's release"),
+        (changed(4, 2), GrnStatus::BlobTooNew, "update this library"),
+        (changed(30, 0x55), GrnStatus::BlobDamaged, "damaged: copy or upload it again"),
+        (blob_of::<33>(), GrnStatus::NetworkTooLarge, "evolve a smaller one"),
+        (blind, GrnStatus::NoPattern, "does not tell targets from empty space"),
+        (boundless, GrnStatus::NoRing, "does not close"),
+        (tuned(|blob| blob.time_scale = 3.5), GrnStatus::StepsPerTick, "1 to 64 whole steps"),
+    ];
+    for (blob, expected, advice) in cases {
+        let status = load(&mut GrnController::default(), &blob);
+        assert_eq!(status, expected);
+        for number in [GrnNumber::F32, GrnNumber::Q8_24] {
+            assert_eq!(unsafe { grn_check(blob.as_ptr(), blob.len(), number as i32) }, expected);
+        }
+        let text = text(grn_status_text(status as i32));
+        assert!(text.contains(advice), "{text}");
+    }
+    assert_eq!(load(&mut GrnController::default(), &blob_of::<32>()), GrnStatus::NoPattern, "32 genes are read");
+}
+
+#[test]
+fn a_newer_blob_is_known_as_such_at_any_length() {
+    let mut long = vec![0; 70_000];
+    long[..4].copy_from_slice(&MAGIC);
+    long[4] = 9;
+    assert_eq!(load(&mut GrnController::default(), &long), GrnStatus::BlobTooNew);
+    long[4] = 1;
+    assert_eq!(load(&mut GrnController::default(), &long), GrnStatus::BlobLength);
+}
+
+#[test]
+fn every_number_has_a_text() {
+    let texts: Vec<&str> = (-1..64).map(|number| text(grn_status_text(number))).collect();
+    let unknown = text(grn_status_text(i32::MIN));
+    assert!(unknown.contains("not a status"));
+    let mut known: Vec<&str> = texts.into_iter().filter(|&text| text != unknown).collect();
+    assert!(known.iter().all(|text| text.is_ascii() && !text.contains('\n')));
+    known.sort_unstable();
+    known.dedup();
+    assert_eq!(known.len(), 23, "each its own");
+    assert_eq!(text(grn_version()), env!("CARGO_PKG_VERSION"));
+    assert_eq!(grn_blob_format_version(), grn_core::blob::FORMAT_VERSION);
+}
+
+#[test]
+fn the_layout_is_that_of_the_released_header() {
+    let sizes = [
+        size_of::<GrnController>(),
+        size_of::<GrnPercept>(),
+        size_of::<GrnCommand>(),
+        size_of::<GrnMessage>(),
+        size_of::<GrnTargetReport>(),
+        size_of::<GrnObstacleReport>(),
+        size_of::<GrnSighting>(),
+    ];
+    assert_eq!(sizes, [2048, 444, 50, 44, 10, 6, 6]);
+}

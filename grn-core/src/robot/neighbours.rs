@@ -1,0 +1,149 @@
+//! The neighbours a robot keeps in mind: the nearest ones, each where it was when last heard.
+
+use super::epuck2::TICKS_PER_SECOND;
+use super::knowledge::{largest_of, metres, squared_distance};
+use super::percept::Millimetres;
+use crate::geometry::Point;
+use crate::scalar::Scalar;
+use heapless::Vec;
+
+/// The most neighbours kept in mind: the nearest ones.
+pub const MAX_NEIGHBOURS: usize = 8;
+
+/// A neighbour not heard for so many ticks, 1 s, is forgotten.
+const FORGET_TICKS: u32 = TICKS_PER_SECOND as u32;
+
+/// Another robot nearby.
+#[derive(Clone, Copy, Debug)]
+pub struct Neighbour<S> {
+    robot: u8,
+    /// Where it was when last heard, metres.
+    pub position: Point<S>,
+    /// How far away it was then, squared, mm².
+    square: u32,
+    /// The tick.
+    heard: u32,
+}
+
+/// The known neighbours. Several are heard in a tick, most of them known already.
+#[derive(Clone, Debug)]
+pub struct Neighbours<S> {
+    known: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
+    /// By robot number: which of the known it is, if it is one of them.
+    places: [u8; 1 << u8::BITS],
+    farthest: usize,
+    largest: u32,
+}
+
+impl<S: Scalar> Neighbours<S> {
+    pub fn new() -> Self {
+        Neighbours { known: Vec::new(), places: [0; 1 << u8::BITS], farthest: 0, largest: 0 }
+    }
+
+    pub fn known(&self) -> &[Neighbour<S>] {
+        &self.known
+    }
+
+    /// Hears `robot` from `place` in tick `now`, itself at `here`.
+    pub fn meet(&mut self, robot: u8, place: Millimetres, here: Millimetres, now: u32) {
+        let square = squared_distance(place, here);
+        let index = match self.index_of(robot) {
+            Some(index) => index,
+            None if !self.known.is_full() => self.known.len(),
+            None if square < self.largest => self.farthest,
+            None => return,
+        };
+        let met = Neighbour { robot, position: metres(place), square, heard: now };
+        match self.known.get_mut(index) {
+            Some(known) => *known = met,
+            // It is full only if the index is that of a known one.
+            None => drop(self.known.push(met)),
+        }
+        self.note(robot, index);
+        if square > self.largest {
+            (self.farthest, self.largest) = (index, square);
+        } else if index == self.farthest {
+            self.measure();
+        }
+    }
+
+    /// Forgets whom it has not heard for long.
+    pub fn forget(&mut self, now: u32) {
+        let fresh = |known: &Neighbour<S>| now.wrapping_sub(known.heard) < FORGET_TICKS;
+        if self.known.iter().all(fresh) {
+            return;
+        }
+        self.known.retain(fresh);
+        for index in 0..self.known.len() {
+            if let Some(robot) = self.known.get(index).map(|known| known.robot) {
+                self.note(robot, index);
+            }
+        }
+        self.measure();
+    }
+
+    fn index_of(&self, robot: u8) -> Option<usize> {
+        let index = self.places.get(usize::from(robot)).copied().map(usize::from)?;
+        self.known.get(index).is_some_and(|known| known.robot == robot).then_some(index)
+    }
+
+    fn note(&mut self, robot: u8, index: usize) {
+        if let Some(place) = self.places.get_mut(usize::from(robot)) {
+            *place = index as u8;
+        }
+    }
+
+    fn measure(&mut self) {
+        (self.farthest, self.largest) = largest_of(self.known.iter().map(|known| known.square));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: Millimetres = Millimetres { x: 0, y: 0 };
+
+    fn meet(neighbours: &mut Neighbours<f32>, robot: u8, x: i16, now: u32) {
+        neighbours.meet(robot, Millimetres { x, y: 0 }, HERE, now);
+    }
+
+    fn robots(neighbours: &Neighbours<f32>) -> std::vec::Vec<u8> {
+        let mut robots: std::vec::Vec<u8> = neighbours.known().iter().map(|known| known.robot).collect();
+        robots.sort_unstable();
+        robots
+    }
+
+    #[test]
+    fn the_nearest_are_kept_where_they_were_last_heard() {
+        let mut neighbours = Neighbours::new();
+        for robot in (0..=255).rev() {
+            meet(&mut neighbours, robot, 100 + i16::from(robot), 1);
+        }
+        assert_eq!(robots(&neighbours), [0, 1, 2, 3, 4, 5, 6, 7]);
+        // The farthest comes nearer, so that another one is the farthest; then the nearest goes away.
+        meet(&mut neighbours, 7, 20, 2);
+        meet(&mut neighbours, 9, 30, 2);
+        assert_eq!(robots(&neighbours), [0, 1, 2, 3, 4, 5, 7, 9]);
+        meet(&mut neighbours, 0, 900, 3);
+        meet(&mut neighbours, 200, 800, 3);
+        assert_eq!(robots(&neighbours), [1, 2, 3, 4, 5, 7, 9, 200]);
+        let seven = neighbours.known().iter().find(|known| known.robot == 7).map(|known| known.position.x);
+        assert_eq!(seven, Some(0.02));
+    }
+
+    #[test]
+    fn who_falls_silent_is_forgotten() {
+        let mut neighbours = Neighbours::new();
+        meet(&mut neighbours, 1, 500, 10);
+        meet(&mut neighbours, 2, 400, 20);
+        meet(&mut neighbours, 3, 300, 10);
+        neighbours.forget(41);
+        assert_eq!(robots(&neighbours), [1, 2, 3]);
+        neighbours.forget(42);
+        assert_eq!(robots(&neighbours), [2]);
+        meet(&mut neighbours, 3, 100, 43);
+        meet(&mut neighbours, 2, 200, 43);
+        assert_eq!((robots(&neighbours), neighbours.largest), (std::vec![2, 3], 200 * 200));
+    }
+}

@@ -133,19 +133,24 @@ fn settle<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     }
 }
 
-/// The genes at rest under these inputs, with their gradients, as a controller computes them once a tick.
-pub fn at_rest<S: Scalar, const N: usize>(network: &Network<S, N>, [x1, x2]: [S; 2]) -> Vec<Dual<S>, N> {
+/// RK4 steps under constant inputs, as a controller does them.
+fn advance<S: Scalar, const N: usize>(
+    expression: &mut Expression<S, N>,
+    network: &Network<S, N>,
+    [x1, x2]: [S; 2],
+    h: Step,
+    steps: u8,
+) {
     let mut rest = Vec::new();
     network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
-    rest
+    expression.advance(network, [x1, x2], &rest, h, steps);
 }
 
 fn integrate<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     let mut expression = Expression::<S, DEFAULT_GENES>::silent();
     for (x1, x2) in [(8, 0), (3, 7), (0, 0), (15, 8), (1, 1)] {
         for steps in [1, 1, 2, 8] {
-            let x = [eighths(x1), eighths(x2)];
-            expression.advance(network, x, &at_rest(network, x), Step::DEFAULT, steps);
+            advance(&mut expression, network, [eighths(x1), eighths(x2)], Step::DEFAULT, steps);
             for &level in expression.levels(network) {
                 hasher.number(level);
             }

@@ -23,6 +23,11 @@ pub fn everything() -> Percept {
     }
 }
 
+/// The same with one neighbour heard in a tick, each in its turn.
+pub fn in_turn(tick: u32) -> Percept {
+    Percept { heard: filled([neighbour((tick % u32::from(NEIGHBOURS)) as u8)]), ..everything() }
+}
+
 /// The same place, and nothing to be perceived there.
 pub fn nothing() -> Percept {
     let mut proximity = [u16::MAX; 8];

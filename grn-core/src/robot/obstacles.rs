@@ -116,11 +116,12 @@ impl<S: Scalar> ObstacleMap<S> {
     /// from `here`, hence farther away from any place within [`SLACK`] of it.
     fn measure(&mut self) {
         let here = self.here;
-        let squares = || self.known.iter().map(|known| squared_distance(known.position, here));
-        (self.farthest, self.largest) = largest_of(squares());
-        let nearest = squares().min().unwrap_or(0);
+        let squares: Vec<u32, MAX_OBSTACLES> =
+            filled(self.known.iter().map(|known| squared_distance(known.position, here)));
+        (self.farthest, self.largest) = largest_of(squares.iter().copied());
+        let nearest = squares.iter().copied().min().unwrap_or(0);
         let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
-        let near = self.known.iter().zip(squares()).filter(|&(_, square)| square <= limit);
+        let near = self.known.iter().zip(&squares).filter(|&(_, &square)| square <= limit);
         self.near = filled(near.map(|(known, _)| metres(known.position)));
     }
 }

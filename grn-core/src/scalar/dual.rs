@@ -71,7 +71,12 @@ impl<S: Scalar> Arithmetic for Dual<S> {
         Dual { value: s, gradient: [slope * d1, slope * d2] }
     }
     fn sigmoid(self, theta: S, k: S) -> Self {
-        let [d1, d2] = self.gradient;
-        Dual { value: (self.value - theta) * k, gradient: [d1 * k, d2 * k] }.logistic()
+        let from_threshold = Dual { value: self.value - theta, gradient: self.gradient };
+        // k is mostly 1, and products take a fifth of the time.
+        if k == S::ONE {
+            return from_threshold.logistic();
+        }
+        let [d1, d2] = from_threshold.gradient;
+        Dual { value: from_threshold.value * k, gradient: [d1 * k, d2 * k] }.logistic()
     }
 }

@@ -31,24 +31,34 @@ pub(super) fn isqrt(n: u64) -> u32 {
     let m = n << shift;
     let index = ((m >> GUESS_SHIFT) as usize).saturating_sub(FIRST);
     let guess = GUESSES_Q16.get(index).copied().unwrap_or(u16::MAX);
-    let upper = m >> 32;
-    let newton = |y: u64| {
-        let one_q30 = (upper * ((y * y) >> 32)) >> 32;
-        (y * ((3 << 30) - one_q30)) >> 31
+    // Factors of 32 bits: a chip multiplies these in one instruction.
+    let upper = (m >> 32) as u32;
+    let newton = |y: u32| {
+        let square = (product(y, y) >> 32) as u32;
+        let one_q30 = (product(upper, square) >> 32) as u32;
+        narrowed(product(y, (3_u32 << 30).wrapping_sub(one_q30)) >> 31)
     };
-    let inverse = newton(newton(u64::from(guess) << 16)).min(u64::from(u32::MAX));
-    let product = (upper * inverse) >> 31;
-    // The product is within 100 of the root, so its square's error fits 40 bits.
-    let error = m.wrapping_sub(product.wrapping_mul(product)) as i64;
-    let corrected = product as i64 + (((error >> 10) * inverse as i64) >> 54);
-    let mut root = corrected.clamp(0, i64::from(u32::MAX)) as u64;
-    if root * root > m {
+    let inverse = newton(newton(u32::from(guess) << 16));
+    let estimate = narrowed(product(upper, inverse) >> 31);
+    // The estimate is within 100 of the root, so its square's error fits 40 bits.
+    let error = m.wrapping_sub(product(estimate, estimate)) as i64;
+    let correction = (i64::from((error >> 10) as i32) * i64::from(inverse)) >> 54;
+    let mut root = (i64::from(estimate) + correction).clamp(0, i64::from(u32::MAX)) as u32;
+    if product(root, root) > m {
         root -= 1;
     }
-    if m - root * root > 2 * root {
+    if m - product(root, root) > 2 * u64::from(root) {
         root += 1;
     }
-    (root >> (shift / 2)) as u32
+    root >> (shift / 2)
+}
+
+fn product(a: u32, b: u32) -> u64 {
+    u64::from(a) * u64::from(b)
+}
+
+fn narrowed(wide: u64) -> u32 {
+    u32::try_from(wide).unwrap_or(u32::MAX)
 }
 
 #[cfg(test)]

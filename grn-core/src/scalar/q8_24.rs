@@ -77,8 +77,8 @@ impl Div for Q8_24 {
 }
 
 /// 1/n! for n = 0 ..= 7, in units of 2^-30.
-const EXP_SERIES_Q30: [i64; 8] = {
-    const fn rounded(factorial: i64) -> i64 {
+const EXP_SERIES_Q30: [i32; 8] = {
+    const fn rounded(factorial: i32) -> i32 {
         ((1 << 30) + factorial / 2) / factorial
     }
     [1 << 30, 1 << 30, 1 << 29, rounded(6), rounded(24), rounded(120), rounded(720), rounded(5040)]
@@ -165,7 +165,11 @@ impl Scalar for Q8_24 {
     const NAME: &'static str = "q8.24";
     type Square = u64;
     fn from_f32(value: f32) -> Self {
-        Self::from_f64(f64::from(value))
+        // As below; a product with a power of two is exact.
+        let scaled = value * ONE_BITS as f32;
+        let whole = scaled as i64;
+        let rest = scaled - whole as f32;
+        Self::saturating_from_wide(whole.saturating_add(i64::from(rest >= 0.5) - i64::from(rest <= -0.5)))
     }
     fn from_f64(value: f64) -> Self {
         // Halves away from zero, in steps that a compiler evaluates when the value is a constant.
@@ -199,20 +203,22 @@ impl Scalar for Q8_24 {
     /// e^-u = 2^-n · 2^-f with u·log2(e) = n + f; 2^-f by its Taylor polynomial in f·ln 2 around f = 1/2, in Q2.30.
     fn exp_neg(self) -> Self {
         const LOG2_E_Q30: i64 = 1_549_082_005;
-        const LN_2_Q30: i64 = 744_261_118;
-        const INV_SQRT_2_Q30: i64 = 759_250_125;
-        const HALF_Q30: i64 = 1 << 29;
+        const LN_2_Q30: i32 = 744_261_118;
+        const INV_SQRT_2_Q30: i32 = 759_250_125;
+        const HALF_Q30: i32 = 1 << 29;
+        let product = |a: i32, b: i32| ((i64::from(a) * i64::from(b)) >> 30) as i32;
         let binary_exponent = i64::from(self.to_bits().max(0)) * LOG2_E_Q30;
         let whole = binary_exponent >> 54;
         if whole > 25 {
             return Self::ZERO;
         }
-        let fraction = (binary_exponent >> 24) & ((1 << 30) - 1);
-        let x = ((HALF_Q30 - fraction) * LN_2_Q30) >> 30;
-        let series = EXP_SERIES_Q30.into_iter().rev().fold(0, |tail, term| term + ((x * tail) >> 30));
-        let mantissa = (series * INV_SQRT_2_Q30) >> 30;
+        let fraction = (binary_exponent >> 24) as i32 & ((1 << 30) - 1);
+        let x = product(HALF_Q30 - fraction, LN_2_Q30);
+        let [c0, c1, c2, c3, c4, c5, c6, c7] = EXP_SERIES_Q30;
+        let series = [c6, c5, c4, c3, c2, c1, c0].into_iter().fold(c7, |tail, term| term + product(x, tail));
+        let mantissa = product(series, INV_SQRT_2_Q30);
         let shift = 6 + whole;
-        Self::from_bits(((mantissa + (1 << (shift - 1))) >> shift) as i32)
+        Self::from_bits(((mantissa >> (shift - 1)) + 1) >> 1)
     }
     fn sqrt(self) -> Self {
         let wide = (self.to_bits().max(0) as u64) << FRACTION_BITS;

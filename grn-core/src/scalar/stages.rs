@@ -55,10 +55,12 @@ impl<S: Scalar> Arithmetic for Stages<S> {
     }
     #[inline]
     fn logistic(self) -> Self {
-        Stages(self.0.map(S::logistic))
+        let [a1, a2, a3, a4] = self.0;
+        Stages([a1.logistic(), a2.logistic(), a3.logistic(), a4.logistic()])
     }
     #[inline]
     fn sigmoid(self, theta: S, k: S) -> Self {
-        Stages(self.0.map(|level| level.sigmoid(theta, k)))
+        let [a1, a2, a3, a4] = self.0;
+        Stages([a1.sigmoid(theta, k), a2.sigmoid(theta, k), a3.sigmoid(theta, k), a4.sigmoid(theta, k)])
     }
 }

@@ -95,7 +95,7 @@ const CODE_BAR: usize = 48 * 1024;
 const MEMORY_BAR: usize = 16 * 1024;
 /// Ends of a cost's name, for the printed two- and three-gene models, and the instructions it must stay below.
 const COST_BARS: [(&str, usize); 3] =
-    [(" nand-xnor rk4-first-step", 1_500), (" nand-xnor tick", 10_000), (" andn-nand-xnor tick", 10_000)];
+    [(" nand-xnor rk4-step", 1_500), (" nand-xnor tick", 10_000), (" andn-nand-xnor tick", 10_000)];
 
 impl Image {
     fn name(&self) -> String {

@@ -1,7 +1,19 @@
 //! Counts the instructions of a controller tick and of its parts, and the stack they take.
 //!
-//! The scene is [`scene::everything`]: two targets, eight obstacle points and eight neighbours. Lines are `number model
-//! part instructions`; a tick's largest cost over 32 ticks, of which one in eight sends a message, too.
+//! The scene is that of [`scene`]: two targets, eight obstacle points and eight neighbours. Lines are `number model part
+//! instructions`. A tick's cost is the largest of 32 ticks:
+//!
+//! | part | what it is |
+//! |---|---|
+//! | tick | targets and points are seen, every neighbour is heard once in eight ticks, as robots speak |
+//! | tick-all-heard-at-once | the same, and all neighbours are heard in one tick, which a radio hardly manages |
+//! | tick-all-new-at-once | the same in a controller's first tick, when nothing is known yet |
+//! | tick-nothing-perceived | all is remembered, nothing seen or heard: a tick without the update of knowledge |
+//! | field | x1, x2 and their gradients |
+//! | rest | all genes' steady states with their slopes: for the gradient and for the integration |
+//! | gradient | that of the pattern error |
+//! | rk4-step | one integration step, after `rest`; a tick has four |
+//! | rk4-step-more | each further step in the same call |
 #![no_std]
 #![no_main]
 
@@ -12,10 +24,11 @@ use grn_core::geometry::{Point, Vector};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::Pattern;
 use grn_core::robot::{Controller, Percept};
-use grn_core::scalar::{Q8_24, Scalar};
+use grn_core::scalar::{Dual, Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
 use grn_firmware::text::decimal;
-use grn_trials::{at_rest, models, scene};
+use grn_trials::{models, scene};
+use heapless::Vec;
 
 grn_firmware::entry!(main);
 
@@ -57,20 +70,22 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     };
     let Ok(mut controller) = Controller::<S>::new(blob, 0) else { return false };
     let everything = scene::everything();
-    let mut dearest = |percept: &Percept| {
-        (0..TICKS)
-            .map(|_| {
-                instructions(&mut || {
-                    black_box(controller.tick(black_box(percept)));
-                })
-            })
-            .fold(0, u32::max)
+    let first = instructions(&mut || drop(black_box(controller.tick(black_box(&everything)))));
+    let mut dearest = |percept: fn(u32) -> Percept| {
+        let cost = |tick| {
+            let percept = percept(tick);
+            instructions(&mut || drop(black_box(controller.tick(black_box(&percept)))))
+        };
+        (0..TICKS).map(cost).fold(0, u32::max)
     };
-    let tick = dearest(&everything);
+    let all_heard = dearest(|_| scene::everything());
+    let tick = dearest(scene::in_turn);
     // The memory still holds what the ticks before told.
-    let remembering = dearest(&scene::nothing());
+    let remembering = dearest(|_| scene::nothing());
     show("tick", tick);
-    show("tick-percept", tick.saturating_sub(remembering));
+    show("tick-all-heard-at-once", all_heard);
+    show("tick-all-new-at-once", first);
+    show("tick-nothing-perceived", remembering);
 
     let network: Network<S> = blob.network.cast();
     let field = blob.field.field::<S>(blob.scale);
@@ -81,20 +96,19 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     let mut here = field.at(Vector::ZERO, targets, &obstacles[..]);
     show("field", instructions(&mut || here = black_box(field.at(black_box(Vector::ZERO), targets, &obstacles[..]))));
     let x = [here.x1, here.x2];
-    let mut rest = at_rest(&network, x);
-    show("rest", instructions(&mut || rest = black_box(at_rest(&network, black_box(x)))));
-    let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
+    let mut rest: Vec<Dual<S>, DEFAULT_GENES> = Vec::new();
     show(
-        "gradient",
-        instructions(&mut || {
-            black_box(pattern.error_gradient(black_box(slopes), &here));
-        }),
+        "rest",
+        instructions(&mut || network.settle([Dual::input(black_box(x[0]), 0), Dual::input(x[1], 1)], &mut rest)),
     );
+    let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
+    let mut gradient = Vector::ZERO;
+    show("gradient", instructions(&mut || gradient = black_box(pattern.error_gradient(black_box(slopes), &here))));
     let mut expression = Expression::<S, DEFAULT_GENES>::silent();
     let mut integrate =
         |steps: u8| instructions(&mut || expression.advance(&network, black_box(x), &rest, Step::DEFAULT, steps));
     let (one, two) = (integrate(1), integrate(2));
-    show("rk4-first-step", one);
-    show("rk4-next-step", two.saturating_sub(one));
+    show("rk4-step", one);
+    show("rk4-step-more", two.saturating_sub(one));
     true
 }

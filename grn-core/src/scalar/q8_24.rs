@@ -215,7 +215,8 @@ impl Scalar for Q8_24 {
         let fraction = (binary_exponent >> 24) as i32 & ((1 << 30) - 1);
         let x = product(HALF_Q30 - fraction, LN_2_Q30);
         let [c0, c1, c2, c3, c4, c5, c6, c7] = EXP_SERIES_Q30;
-        let series = [c6, c5, c4, c3, c2, c1, c0].into_iter().fold(c7, |tail, term| term + product(x, tail));
+        let sum = |term: i32, tail: i32| term + product(x, tail);
+        let series = sum(c0, sum(c1, sum(c2, sum(c3, sum(c4, sum(c5, sum(c6, c7)))))));
         let mantissa = product(series, INV_SQRT_2_Q30);
         let shift = 6 + whole;
         Self::from_bits(((mantissa >> (shift - 1)) + 1) >> 1)

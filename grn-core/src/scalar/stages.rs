@@ -51,7 +51,8 @@ impl<S: Scalar> Arithmetic for Stages<S> {
     const ONE: Self = Stages([S::ONE; 4]);
     #[inline]
     fn constant(value: S) -> Self {
-        Stages([value; 4])
+        // Written out: compilers for size make a loop of the short form.
+        Stages([value, value, value, value])
     }
     #[inline]
     fn logistic(self) -> Self {

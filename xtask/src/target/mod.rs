@@ -3,7 +3,7 @@
 
 mod elf;
 mod golden;
-mod tools;
+pub mod tools;
 
 use crate::tally::Tally;
 use elf::Elf;

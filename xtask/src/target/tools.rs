@@ -36,14 +36,21 @@ impl Compiler {
     /// The beginning of a build for a target.
     pub fn cargo_build(&self, target: &str) -> Command {
         let mut command = crate::this_cargo();
-        command.arg("build");
-        if let Compiler::Debian(_) = self {
-            let linker = format!("CARGO_TARGET_{}_LINKER", target.to_uppercase().replace('-', "_"));
-            command.env("RUSTC_BOOTSTRAP", "1").env("RUSTC", DEBIAN_RUSTC).env(linker, "ld.lld");
-            command.arg("-Zbuild-std=core");
-        }
-        command.args(["--target", target]);
+        command.args(["build", "--target", target]).envs(self.environment(target));
         command
+    }
+
+    /// What makes cargo use it for a target.
+    pub fn environment(&self, target: &str) -> Vec<(String, String)> {
+        let Compiler::Debian(_) = self else { return Vec::new() };
+        let linker = format!("CARGO_TARGET_{}_LINKER", target.to_uppercase().replace('-', "_"));
+        let variables = [
+            ("RUSTC_BOOTSTRAP", "1"),
+            ("RUSTC", DEBIAN_RUSTC),
+            ("CARGO_UNSTABLE_BUILD_STD", "core"),
+            (linker.as_str(), "ld.lld"),
+        ];
+        variables.map(|(name, value)| (name.into(), value.into())).to_vec()
     }
 }
 
@@ -77,6 +84,13 @@ pub fn emulators(programs: &[&str]) -> Result<(), String> {
     // Without the pin, apt removes what an image of another origin has installed.
     let pinned = std::fs::read_to_string("/etc/os-release").is_ok_and(|text| text.contains("bookworm"));
     install(&["qemu-system-arm", "qemu-system-misc", if pinned { "qemu-utils/bookworm" } else { "qemu-utils" }])
+}
+
+/// Makes sure of programs, each with the Debian packages that have it.
+pub fn programs(wanted: &[(&str, &[&'static str])]) -> Result<(), String> {
+    let missing = wanted.iter().filter(|(program, _)| !present(program)).flat_map(|(_, packages)| packages.iter());
+    let missing: Vec<&str> = missing.copied().collect();
+    if missing.is_empty() { Ok(()) } else { install(&missing) }
 }
 
 fn install(packages: &[&str]) -> Result<(), String> {

@@ -1,4 +1,5 @@
 //! `grn flash` and `grn robots` as engineers use them: robots behind sockets, files for programmers, blobs that no robot takes.
+#![allow(clippy::unwrap_used, reason = "what only tests call")]
 
 use firmware_sim::flash::{SECTOR, SimulatedFlash};
 use grn_core::blob::Blob;

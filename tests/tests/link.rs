@@ -1,4 +1,5 @@
 //! The link between host and robot: what is said, what is refused, and what bad wires do to it.
+#![allow(clippy::unwrap_used, reason = "what only tests call")]
 
 use firmware_sim::flash::SimulatedFlash;
 use firmware_sim::link::faults::{Faults, FaultyWire};

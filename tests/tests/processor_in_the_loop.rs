@@ -1,5 +1,6 @@
 //! The image that is flashed, in QEMU, against the same controller in this process. `cargo xtask target` builds the images
 //! and runs these tests.
+#![allow(clippy::unwrap_used, reason = "what only tests call")]
 
 use firmware_sim::link::flashing::flash;
 use firmware_sim::link::qemu::Emulator;

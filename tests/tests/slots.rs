@@ -1,4 +1,5 @@
 //! Slots: what is in charge after whatever happened, power loss at every step included.
+#![allow(clippy::unwrap_used, reason = "what only tests call")]
 
 use embedded_storage::nor_flash::NorFlash;
 use firmware_sim::flash::SimulatedFlash;

@@ -51,7 +51,7 @@ impl SlotFile {
         }
         records.push(ihex::Record::EndOfFile);
         // It fails only for records of more than 255 bytes or without an end.
-        ihex::create_object_file_representation(&records).unwrap_or_default() + "\n"
+        ihex::create_object_file_representation(&records).unwrap_or_default()
     }
 
     /// GDB commands that load the HEX file through the e-puck2's on-board Black Magic Probe.

@@ -10,9 +10,10 @@ use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::{self, Frame, Receiver};
 use grn_core::robot::link::message::{
-    About, Activate, Arithmetic, Begin, BlobFault, Chunk, Commit, Confirm, Identify, LoadFault, REFUSED, RESPONSE,
-    Request, Reset, RollBack, Status, VERSION, decode_message, encode_request,
+    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, REFUSED, RESPONSE, Request, Reset, RollBack,
+    Status, VERSION, decode_message, encode_request,
 };
+use grn_core::robot::link::refusal::{BlobFault, LoadFault};
 use grn_core::robot::link::server::TRIAL_TICKS;
 use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::slots::{MAX_BLOB, Stage};

@@ -3,7 +3,7 @@
 //! | layer | module | what it does |
 //! |---|---|---|
 //! | 1 | [`frame`] | COBS and CRC: bytes ↔ frames, in step again after any garbage |
-//! | 2 | [`message`] | frames ↔ requests, responses and refusals |
+//! | 2 | [`message`], [`refusal`] | frames ↔ requests, responses and refusals |
 //! | 3 | [`server`] | the robot: does what requests say, each once |
 //!
 //! The host speaks first and waits; when no response comes it sends the same frame again. Requests about blobs are the same
@@ -11,7 +11,8 @@
 
 pub mod frame;
 pub mod message;
+pub mod refusal;
 pub mod server;
 
-pub use message::Refusal;
+pub use refusal::Refusal;
 pub use server::Server;

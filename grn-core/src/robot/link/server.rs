@@ -2,9 +2,10 @@
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
-    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, REFUSED, RESPONSE, Refusal, Request, Reset,
-    RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
+    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request,
+    Reset, RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
 };
+use super::refusal::Refusal;
 use crate::blob::{Blob, FORMAT_VERSION};
 use crate::network::DEFAULT_GENES;
 use crate::robot::controller::Controller;
@@ -164,7 +165,7 @@ fn answer<R: Request>(
     frame: &Frame<'_>,
     respond: impl FnOnce(R) -> Result<R::Response, Refusal>,
 ) -> Result<Vec<u8, MAX_WIRE>, TooLong> {
-    if frame.version != VERSION && !R::FROZEN {
+    if frame.version != VERSION && R::OPERATION > LAST_FROZEN {
         return refuse(frame, Refusal::Version { spoken: VERSION });
     }
     let response = decode_message(frame.payload).ok_or(Refusal::Malformed).and_then(respond);

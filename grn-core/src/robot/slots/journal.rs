@@ -95,7 +95,7 @@ pub struct Journal {
     activated: bool,
     confirmed: bool,
     rejected: bool,
-    /// The first unit that nothing was written to, if there is one.
+    /// How many units come before the first that nothing was written to.
     used: usize,
 }
 

@@ -99,7 +99,7 @@ fn expect<T, E: core::fmt::Display>(result: Result<T, E>) -> T {
     result.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The printed model XNOR(NAND(x1, x1), x2) in a blob for this world; four RK4 steps a tick.
+/// The printed model XNOR(NAND(x1, x1), x2) in a blob for this world; one RK4 step a tick.
 fn blob(scenario: &Scenario, scale: f64) -> Blob {
     let gene = |motif, inputs: &[Source], theta| Gene { motif, inputs: inputs.iter().copied().collect(), theta };
     let nand = gene(Motif::Nand, &[Source::X1, Source::X1], 0.8393);
@@ -114,7 +114,7 @@ fn blob(scenario: &Scenario, scale: f64) -> Blob {
         },
         level_fraction: morphogen.level as f32,
         scale: scale as f32,
-        step: Step::DEFAULT,
+        step: Step::EIGHTH,
         time_scale: 4.0,
         gains: Gains::default(),
     }

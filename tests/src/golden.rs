@@ -22,12 +22,12 @@ pub fn morphogen() -> Morphogen {
 pub type GoldenError = Box<dyn std::error::Error>;
 
 /// The file of digests that every machine must give, and its text as this one gives it.
-pub fn digests() -> (PathBuf, String) {
+pub fn digests() -> (PathBuf, Vec<u8>) {
     let [f32, fixed] = [
         grn_trials::digests::<f32>().lines::<f32>().to_string(),
         grn_trials::digests::<Q8_24>().lines::<Q8_24>().to_string(),
     ];
-    (repository("tests/golden/digest.txt"), f32 + &fixed)
+    (repository("tests/golden/digest.txt"), (f32 + &fixed).into_bytes())
 }
 
 /// The blobs of the printed models that ship in `models/`: path and bytes.

@@ -14,7 +14,7 @@ fn around<const N: usize>(network: Network<f32, N>) -> Blob<N> {
         field: FieldParameters { kernel: Kernel::Gaussian, target_width: 1.5, obstacle_width: 0.9 },
         level_fraction: 0.5,
         scale: 0.25,
-        step: Step::DEFAULT,
+        step: Step::EIGHTH,
         time_scale: 4.0,
         gains: Gains::default(),
     }

@@ -1,15 +1,15 @@
 //! Text: how wide it is, and which parts of it are symbols and subscripts.
 
-/// Widths of the printable ASCII characters in Helvetica, in thousandths of the font size (Adobe's metrics
-/// file, which Arial and Liberation Sans follow).
+/// Widths of the printable ASCII characters in DejaVu Sans, in thousandths of the font size: the widest font that a viewer
+/// is likely to take. In a narrower one (Helvetica, Arial, Liberation Sans) labels have room to spare.
 #[rustfmt::skip]
 const WIDTHS: [u16; 95] = [
-    278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333, 278, 278,
-    556, 556, 556, 556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556,
-    1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
-    667, 778, 722, 667, 611, 722, 667, 944, 667, 667, 611, 278, 278, 278, 469, 556,
-    333, 556, 556, 500, 556, 556, 278, 556, 556, 222, 222, 500, 222, 833, 556, 556,
-    556, 556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584,
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636,
+    636, 636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698,
+    770, 632, 575, 775, 752, 295, 295, 656, 557, 863, 748, 787, 603, 787, 695, 635, 611, 732,
+    684, 989, 685, 611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635, 615, 352, 635,
+    634, 278, 278, 579, 278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592,
+    525, 636, 337, 636, 838,
 ];
 
 /// Size of a subscript relative to the text it belongs to.
@@ -76,10 +76,10 @@ fn char_width(c: char) -> f64 {
     let thousandths = match (c as usize).checked_sub(32) {
         Some(index) if index < WIDTHS.len() => WIDTHS[index],
         _ => match c {
-            '·' => 278,
-            '°' => 400,
-            '×' | '≥' | '≤' | '–' => 570,
-            _ => 600,
+            '·' => 318,
+            '°' | '–' => 500,
+            '×' | '≥' | '≤' => 838,
+            _ => 634,
         },
     };
     f64::from(thousandths) / 1000.0
@@ -91,10 +91,10 @@ pub(super) fn run_width(run: &Run, size: f64) -> f64 {
     run.text.chars().map(char_width).sum::<f64>() * size
 }
 
-/// Width of text at a font size, as [`runs`] sets it; bold is some 6 % wider.
+/// Width of text at a font size, as [`runs`] sets it; bold is some 12 % wider.
 pub(super) fn width(text: &str, size: f64, bold: bool) -> f64 {
     let natural: f64 = runs(text).iter().map(|run| run_width(run, size)).sum();
-    if bold { natural * 1.06 } else { natural }
+    if bold { natural * 1.12 } else { natural }
 }
 
 /// Breaks an expression after commas into lines no wider than `limit` where commas allow it.
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn helvetica_widths() {
-        assert!((width("Mi", 10.0, false) - 10.55).abs() < 1e-9);
+    fn widths_are_those_of_the_font() {
+        assert!((width("Mi", 10.0, false) - 11.41).abs() < 1e-9);
     }
 }

@@ -17,7 +17,7 @@ use core::fmt;
 use heapless::Vec;
 
 /// A robot speaks every so many ticks, a quarter of a second, each in its own turn. In that time it moves 3 cm.
-const BROADCAST_PERIOD: u32 = 8;
+pub(super) const BROADCAST_PERIOD: u32 = 8;
 /// The most RK4 steps in one tick.
 const MAX_STEPS_PER_TICK: f32 = 64.0;
 

@@ -1,5 +1,6 @@
 //! What a robot knows of the world: its own sightings and what others broadcast, with their age.
 
+use super::controller::BROADCAST_PERIOD;
 use super::epuck2::TICKS_PER_SECOND;
 use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
@@ -80,6 +81,8 @@ impl<S: Scalar> Knowledge<S> {
     }
 
     /// Takes one tick's percept in; `here` is the robot's own position.
+    ///
+    /// Of what is heard in a tick, one message's obstacle points are learned: walls stand still, and a tick has its time.
     pub fn update(&mut self, percept: &Percept, here: Point<S>) {
         let here = millimetres(here);
         self.grow_older(here);
@@ -93,11 +96,14 @@ impl<S: Scalar> Knowledge<S> {
             if let Some(report) = &message.target {
                 self.hear_of_target(report);
             }
-            for report in &message.obstacles {
-                self.obstacles.learn(report);
-            }
             self.neighbours.meet(message.sender, message.position, here, self.tick);
         }
+        // Robots keep their turns, so that the same ones are heard together again and again.
+        let told = nth_in_turn(&percept.heard, self.tick / BROADCAST_PERIOD).map(|message| &message.obstacles);
+        for report in told.into_iter().flatten() {
+            self.obstacles.learn(report);
+        }
+        self.obstacles.settle();
     }
 
     fn grow_older(&mut self, here: Millimetres) {

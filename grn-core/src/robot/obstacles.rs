@@ -34,6 +34,8 @@ pub struct ObstacleMap<S> {
     here: Millimetres,
     farthest: usize,
     largest: u32,
+    /// Points were added since distances were measured; there is room for more.
+    stale: bool,
 }
 
 impl<S: Scalar> ObstacleMap<S> {
@@ -45,6 +47,7 @@ impl<S: Scalar> ObstacleMap<S> {
             here: Millimetres::default(),
             farthest: 0,
             largest: 0,
+            stale: false,
         }
     }
 
@@ -52,7 +55,7 @@ impl<S: Scalar> ObstacleMap<S> {
         &self.known
     }
 
-    /// Those, in metres, of which one is the nearest.
+    /// Those, in metres, of which one is the nearest, as of the last [`settle`](Self::settle).
     pub fn near(&self) -> &[Point<S>] {
         &self.near
     }
@@ -92,6 +95,13 @@ impl<S: Scalar> ObstacleMap<S> {
         }
     }
 
+    /// Measures what was learned.
+    pub fn settle(&mut self) {
+        if self.stale {
+            self.measure();
+        }
+    }
+
     /// Where the point is kept now, if it is.
     fn place(&mut self, told: &ObstacleReport) -> Option<usize> {
         let cell = cell(told.position);
@@ -108,13 +118,18 @@ impl<S: Scalar> ObstacleMap<S> {
         } else {
             return None;
         };
-        self.measure();
+        // Which one is the farthest matters to a full map only.
+        self.stale = true;
+        if self.known.is_full() {
+            self.measure();
+        }
         Some(index)
     }
 
     /// Finds the farthest point and those that can be the nearest: every other one is more than 2 [`SLACK`] farther away
     /// from `here`, hence farther away from any place within [`SLACK`] of it.
     fn measure(&mut self) {
+        self.stale = false;
         let here = self.here;
         let squares: Vec<u32, MAX_OBSTACLES> =
             filled(self.known.iter().map(|known| squared_distance(known.position, here)));
@@ -148,6 +163,7 @@ mod tests {
             map.learn(&told(x * 32 + 3, 3));
             map.learn(&told(x * 32 + 9, 3));
         }
+        map.settle();
         let mut kept: std::vec::Vec<i16> = map.known().iter().map(|known| known.position.x).collect();
         kept.sort_unstable();
         assert_eq!(kept, (0..16).map(|x| x * 32 + 3).collect::<std::vec::Vec<_>>());

@@ -216,9 +216,9 @@ fn image_checks(image: &Image, root: &Path, golden: &Golden) -> Vec<(&'static st
         Ok(elf) => elf,
         Err(error) => return vec![("is an image", Err(error))],
     };
-    let sizes = elf.sizes();
+    let sizes = elf.sizes;
     println!("{name}: {sizes}");
-    let panics = match elf.symbols().find(|symbol| symbol.contains("panicking") || symbol.contains("begin_unwind")) {
+    let panics = match elf.symbols.iter().find(|symbol| symbol.contains("panicking") || symbol.contains("begin_unwind")) {
         None => Ok(()),
         Some(symbol) => Err(format!("it holds {symbol}: something can panic")),
     };

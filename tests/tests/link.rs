@@ -358,7 +358,7 @@ fn percept(rng: &mut Pcg64) -> Percept {
     }
 }
 
-/// Random frames, sound and unsound, with and without sense.
+/// Random frames, sound and unsound, with and without sense; `GRN_FUZZ_INPUTS` asks for more.
 #[test]
 fn no_frame_makes_a_robot_panic() -> Outcome {
     let inputs = match std::env::var("GRN_FUZZ_INPUTS") {
@@ -372,6 +372,9 @@ fn no_frame_makes_a_robot_panic() -> Outcome {
     let mut rng = Pcg64::seed_from_u64(11);
     let (mut answered, mut done) = (0_u64, 0_u64);
     for input in 0..inputs {
+        if input > 0 && input % 1_000_000 == 0 {
+            println!("{input} frames");
+        }
         let (operation, mut payload) =
             if rng.random_bool(0.5) { sensible(&mut rng, &model) } else { senseless(&mut rng) };
         if !payload.is_empty() && rng.random_bool(0.2) {

@@ -22,8 +22,8 @@ const HELP: &str = "cargo xtask TASK
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
-  fuzz   feed the blob decoder 10 million mutated inputs, then 10 million of libFuzzer's
-         (the second part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
+  fuzz   feed the blob decoder 10 million mutated inputs and a robot 10 million random frames, then the decoder 10 million
+         inputs of libFuzzer's (this part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
 ";
 
 fn main() -> ExitCode {
@@ -127,10 +127,12 @@ fn reproduce() -> bool {
 
 fn fuzz() -> bool {
     const INPUTS: &str = "10000000";
-    let mutated = cargo(
-        &["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"],
-        &[("GRN_FUZZ_INPUTS", INPUTS)],
-    );
+    let variables = [("GRN_FUZZ_INPUTS", INPUTS)];
+    let decoder = ["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"];
+    // With the checks of the test profile: a robot must not even come near an overflow.
+    let link =
+        ["test", "--package", "grn-tests", "--test", "link", "no_frame_makes_a_robot_panic", "--", "--nocapture"];
+    let random = [cargo(&decoder, &variables), cargo(&link, &variables)] == [true; 2];
     let ready = Command::new("cargo").args(["+nightly", "fuzz", "--version"]).output();
     if !ready.is_ok_and(|output| output.status.success()) {
         eprintln!(
@@ -142,5 +144,5 @@ fn fuzz() -> bool {
     let runs = format!("-runs={INPUTS}");
     let guided =
         Command::new("cargo").args(["+nightly", "fuzz", "run", "decode", "--", &runs, "-max_len=512"]).status();
-    mutated && guided.is_ok_and(|status| status.success())
+    random && guided.is_ok_and(|status| status.success())
 }

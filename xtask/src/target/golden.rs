@@ -6,10 +6,14 @@ use std::path::{Path, PathBuf};
 /// How far a size or a cost may be from its golden value, per cent: compilers differ a little, and so do their versions.
 const TOLERANCE: usize = 2;
 
-/// The golden files in `folder`; with `bless` they are written instead of compared with.
+/// Golden files.
 pub struct Golden {
+    /// Where they are.
     pub folder: PathBuf,
+    /// Write them instead of comparing with them.
     pub bless: bool,
+    /// The task that does so when asked to.
+    pub task: &'static str,
 }
 
 impl Golden {
@@ -31,9 +35,9 @@ impl Golden {
         if differences.is_empty() {
             return Ok(());
         }
-        let all = differences.join("\n");
+        let (all, task) = (differences.join("\n"), self.task);
         Err(format!(
-            "{all}\nmore than {TOLERANCE} % off firmware/golden/{file}: if that is meant, cargo xtask target --bless"
+            "{all}\nmore than {TOLERANCE} % off firmware/golden/{file}: if that is meant, cargo xtask {task} --bless"
         ))
     }
 }

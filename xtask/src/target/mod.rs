@@ -2,7 +2,7 @@
 //! with golden files.
 
 mod elf;
-mod golden;
+pub mod golden;
 pub mod tools;
 
 use crate::tally::Tally;
@@ -143,7 +143,7 @@ pub fn check(bless: bool, tally: &mut Tally) {
     };
     println!("\nfirmware: {compiler}");
     host_checks(&root, tally);
-    let golden = Golden { folder: root.join("firmware/golden"), bless };
+    let golden = Golden { folder: root.join("firmware/golden"), bless, task: "target" };
     for images in IMAGES.chunk_by(Image::built_with) {
         let built = build(&compiler, &root, images);
         for image in images {

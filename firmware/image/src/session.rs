@@ -91,7 +91,10 @@ impl Host {
         self.acts.is_empty() && self.answered
     }
 
+    // Not inlined, nor is `write`: a robot is not to be charged with what they take while it does not compute.
+
     /// Makes the next request; breaks at the end of all acts, or if the robot did not do what it was asked to.
+    #[inline(never)]
     fn ask(&mut self) -> ControlFlow<()> {
         while let Some((act, later)) = self.acts.split_first() {
             if !self.answered {
@@ -128,6 +131,7 @@ impl Port for Host {
         self.wire.get(self.sent - 1).copied()
     }
 
+    #[inline(never)]
     fn write(&mut self, bytes: &[u8]) {
         let mut receiver = Receiver::new();
         for &byte in bytes {

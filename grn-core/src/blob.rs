@@ -114,11 +114,35 @@ impl<const N: usize> Blob<N> {
     ///
     /// # Errors
     /// The first fault found, in the order of [`BlobError`].
+    #[inline(never)]
     pub fn decode(bytes: &[u8]) -> Result<Self, BlobError> {
         let envelope = Envelope::open(bytes)?;
-        let payload = Payload::<N>::read(envelope.payload)?;
-        let blob = payload.into_blob()?;
-        if blob.payload().matches(envelope.payload) { Ok(blob) } else { Err(BlobError::NotCanonical) }
+        match &Payload::read(envelope.payload) {
+            Ok(payload) => Blob::canonical(payload, envelope.payload),
+            Err(error) => Err(*error),
+        }
+    }
+
+    /// The blob of a payload that was read from `bytes`.
+    #[inline(never)]
+    fn canonical(payload: &Payload<N>, bytes: &[u8]) -> Result<Self, BlobError> {
+        let mut blob = payload.to_blob();
+        let fault = match &blob {
+            Ok(blob) => {
+                let differs = || (!blob.encodes_to(bytes)).then_some(BlobError::NotCanonical);
+                blob.check().err().or_else(differs)
+            }
+            Err(_) => None,
+        };
+        if let Some(fault) = fault {
+            blob = Err(fault);
+        }
+        blob
+    }
+
+    #[inline(never)]
+    fn encodes_to(&self, payload: &[u8]) -> bool {
+        self.payload().matches(payload)
     }
 
     /// Writes the blob to the front of `buffer` and returns the bytes written.

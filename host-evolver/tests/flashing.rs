@@ -134,7 +134,10 @@ fn what_no_robot_takes_is_refused_with_a_way_out() -> Outcome {
         ),
         (spoilt(folder.path(), "future.grn", |bytes| bytes[4] += 1)?, vec!["future.grn", "version 2", "update"]),
         (spoilt(folder.path(), "short.grn", |bytes| bytes.truncate(50))?, vec!["short.grn", "copy or upload it again"]),
-        (spoilt(folder.path(), "large.grn", of_forty_genes)?, vec!["large.grn", "40 genes", &capacity]),
+        (
+            spoilt(folder.path(), "large.grn", of_forty_genes)?,
+            vec!["large.grn", "40 genes", &capacity, "evolve a smaller one"],
+        ),
         (folder.path().join("missing.grn"), vec!["missing.grn", "cannot be read"]),
     ];
     for (path, words) in cases {

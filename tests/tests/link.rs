@@ -22,6 +22,7 @@ use grn_tests::decoder::sealed;
 use grn_tests::robots::{LAYOUT, Shipped, blob_of_genes, empty_flash};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
+use std::io::ErrorKind;
 use std::time::Duration;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
@@ -273,6 +274,63 @@ fn unsound_blobs_are_refused_with_a_way_out() -> Outcome {
     Ok(())
 }
 
+/// Whether flashing succeeded; if not, it must have ended with a word that a person can act on.
+fn ended_cleanly<T>(result: Result<T, LinkError>) -> Option<T> {
+    match result {
+        Ok(done) => Some(done),
+        Err(LinkError::Silent { .. } | LinkError::Refused(_)) => None,
+        Err(LinkError::Wire(error)) if error.kind() == ErrorKind::ConnectionReset => None,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A wire that counts what is sent.
+struct Counted<'a, W> {
+    wire: W,
+    frames: &'a mut u32,
+}
+
+impl<W: Wire> Wire for Counted<'_, W> {
+    fn send(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        *self.frames += 1;
+        self.wire.send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> std::io::Result<usize> {
+        self.wire.receive(buffer, patience)
+    }
+}
+
+/// As bad wires as below, and no more patience than `grn flash` has.
+#[test]
+fn every_upload_ends_after_a_bounded_number_of_frames() {
+    let model = Shipped::named("nand-xnor");
+    let patience = Patience { tries: Patience::default().tries, ..PATIENCE };
+    // Identify, status, begin, commit, activate, confirm; chunks of 8 bytes; and from 64 bytes down to these 6 tries each.
+    let most = patience.tries * (6 + model.bytes.len().div_ceil(8) as u32) + 3 * 6;
+    let (mut uploads, mut longest) = (0, 0);
+    for seed in 0..300 {
+        // From hardly any fault to 10 % of all bytes.
+        let share = 0.1 / 3.0 * (seed % 10 + 1) as f64 / 10.0;
+        let faults = Faults { flipped: share, dropped: share, doubled: share, broken: 1e-4 };
+        let mut robot = LocalRobot::new(server(empty_flash(seed)));
+        let mut frames = 0;
+        let wire = Counted { wire: FaultyWire::new(&mut robot, faults, seed), frames: &mut frames };
+        let connected = ended_cleanly(Client::connect(wire, patience));
+        let flashed = connected
+            .and_then(|(mut client, _)| ended_cleanly(flash(&mut client, &model.bytes, model.identity, true, |_| {})));
+        assert!(frames <= most, "{frames} frames");
+        longest = longest.max(frames);
+        let status = client(robot.into_server()).ask(&Status).unwrap();
+        let identity = status.active.map(|slot| status.slots[usize::from(slot)].identity);
+        assert!(identity.is_none_or(|identity| identity == model.identity), "a wrong blob is in charge");
+        assert!(flashed.is_none() || identity.is_some());
+        uploads += usize::from(flashed.is_some());
+    }
+    println!("{uploads} of 300 uploads; the longest took {longest} of {most} frames");
+    assert!((30..270).contains(&uploads), "{uploads} uploads: the exercise has no edge");
+}
+
 /// 10 % of all bytes are flipped, lost or doubled, and the connection breaks at random, again and again.
 #[test]
 fn bad_wires_delay_an_upload_but_never_spoil_it() {
@@ -288,8 +346,8 @@ fn bad_wires_delay_an_upload_but_never_spoil_it() {
         let flashed = (0..40).any(|connection| {
             connections += 1;
             let faulty = FaultyWire::new(&mut robot, faults, seed << 8 | connection);
-            let Ok((mut client, _)) = Client::connect(faulty, PATIENCE) else { return false };
-            flash(&mut client, &new.bytes, new.identity, true, |_| {}).is_ok()
+            let Some((mut client, _)) = ended_cleanly(Client::connect(faulty, PATIENCE)) else { return false };
+            ended_cleanly(flash(&mut client, &new.bytes, new.identity, true, |_| {})).is_some()
         });
         let status = client(robot.into_server()).ask(&Status).unwrap();
         let identity = status.slots[usize::from(status.active.unwrap())].identity;
@@ -358,7 +416,7 @@ fn percept(rng: &mut Pcg64) -> Percept {
     }
 }
 
-/// Random frames, sound and unsound, with and without sense.
+/// Random frames, sound and unsound, with and without sense; `GRN_FUZZ_INPUTS` asks for more.
 #[test]
 fn no_frame_makes_a_robot_panic() -> Outcome {
     let inputs = match std::env::var("GRN_FUZZ_INPUTS") {
@@ -372,6 +430,9 @@ fn no_frame_makes_a_robot_panic() -> Outcome {
     let mut rng = Pcg64::seed_from_u64(11);
     let (mut answered, mut done) = (0_u64, 0_u64);
     for input in 0..inputs {
+        if input > 0 && input % 1_000_000 == 0 {
+            println!("{input} frames");
+        }
         let (operation, mut payload) =
             if rng.random_bool(0.5) { sensible(&mut rng, &model) } else { senseless(&mut rng) };
         if !payload.is_empty() && rng.random_bool(0.2) {

@@ -3,15 +3,16 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use firmware_sim::flash::SimulatedFlash;
-use grn_core::blob::{Blob, Identity};
+use grn_core::blob::Identity;
 use grn_core::robot::slots::{Layout, MAX_BLOB, MIN_SLOT, SlotError, Slots, Stage, image};
 use grn_tests::robots::{LAYOUT, Shipped, empty_flash};
 
 type Outcome = Result<(), SlotError>;
 
 fn start<F: NorFlash>(flash: F) -> Result<(Slots<F>, Option<Identity>), SlotError> {
-    let (slots, blob) = Slots::start(flash, LAYOUT, |_| true)?;
-    Ok((slots, blob.map(|blob: Blob| blob.identity())))
+    let mut slots = Slots::start(flash, LAYOUT, |_| true)?;
+    let blob = slots.blob_in_charge()?;
+    Ok((slots, blob.map(|blob| blob.identity())))
 }
 
 fn upload<F: NorFlash>(slots: &mut Slots<F>, blob: &Shipped) -> Outcome {
@@ -57,8 +58,10 @@ fn a_blob_goes_through_its_stages() -> Outcome {
     slots.confirm(new.identity)?;
     let (mut slots, active) = start(slots.into_flash())?;
     assert_eq!(active, Some(new.identity));
-    assert_eq!(slots.roll_back(new.identity)?.identity(), old.identity);
-    assert_eq!(slots.roll_back(new.identity)?.identity(), old.identity, "asked again, nothing happens");
+    slots.roll_back(new.identity)?;
+    assert_eq!(slots.blob_in_charge()?.map(|blob| blob.identity()), Some(old.identity));
+    slots.roll_back(new.identity)?;
+    assert_eq!(slots.active_status()?.map(|slot| slot.identity), Some(old.identity), "asked again, nothing happens");
     let (mut slots, active) = start(slots.into_flash())?;
     assert_eq!(active, Some(old.identity));
     assert_eq!(slots.status()?.map(|slot| slot.stage), [Stage::Confirmed, Stage::Rejected]);
@@ -204,7 +207,7 @@ fn power_loss_at_every_step_of_activating_confirming_and_rolling_back() {
     let (mut slots, _) = start(with_history(&old, &older, 3)).unwrap();
     upload(&mut slots, &new).unwrap();
     let uploaded = slots.into_flash();
-    survives_power_loss(&uploaded, &old, &new, |slots| slots.activate(new.identity).map(|_| ()));
+    survives_power_loss(&uploaded, &old, &new, |slots| slots.activate(new.identity));
     survives_power_loss(&uploaded, &old, &new, |slots| {
         slots.activate(new.identity)?;
         slots.confirm(new.identity)
@@ -212,5 +215,5 @@ fn power_loss_at_every_step_of_activating_confirming_and_rolling_back() {
     let (mut slots, _) = start(uploaded).unwrap();
     slots.activate(new.identity).unwrap();
     slots.confirm(new.identity).unwrap();
-    survives_power_loss(&slots.into_flash(), &old, &new, |slots| slots.roll_back(new.identity).map(|_| ()));
+    survives_power_loss(&slots.into_flash(), &old, &new, |slots| slots.roll_back(new.identity));
 }

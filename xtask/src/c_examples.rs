@@ -1,10 +1,11 @@
 //! The C library's examples, compiled and run: on this machine, and on a bare Cortex-M4F in QEMU.
 
 use crate::tally::Tally;
+use crate::target::golden::Golden;
 use crate::target::tools::{self, Compiler};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 /// What has to be installed besides the emulator, and the Debian packages that have it.
@@ -15,22 +16,28 @@ const TOOLS: [(&str, &[&str]); 4] = [
     ("arm-none-eabi-gcc", &["gcc-arm-none-eabi"]),
 ];
 
-/// Tests the header and the examples, and counts: both examples must print what `expected.txt` says, byte for byte.
+/// Tests the header and the examples, and counts: both examples must print what `expected.txt` says, byte for byte, and the
+/// library must weigh what `firmware/golden/c-library.run` says; with `bless` that file is written anew.
 ///
 /// What is missing on this machine is installed if that can be done, else a failure, and how to get it is printed.
-pub fn check(tally: &mut Tally) {
+pub fn check(bless: bool, tally: &mut Tally) {
     let ready = tools::emulators(&["qemu-system-arm"])
         .and_then(|()| tools::programs(&TOOLS))
         .and_then(|()| Compiler::find(&[TARGET]));
     let chip = ready.as_ref().map(|compiler| compiler.environment(TARGET)).unwrap_or_default();
     let checks: Vec<(&str, Result<(), String>)> = match ready {
         Err(error) => vec![("compilers and emulator are there", Err(error))],
-        Ok(_) => vec![
-            ("the header is C++ too", header()),
-            ("the example prints what it should on this machine", example("run-host", &[])),
-            ("the example prints what it should on the chip", example("run-chip", &chip)),
-            ("size of the library on the chip", make("size", &chip).map(|sizes| print!("{sizes}"))),
-        ],
+        Ok(_) => {
+            let on_the_chip = make("run-chip", &chip);
+            let golden = Golden { folder: repository().join("firmware/golden"), bless, task: "c" };
+            let costs = costs(&on_the_chip, make("size", &chip));
+            vec![
+                ("the header is C++ too", header()),
+                ("the example prints what it should on this machine", expected(&make("run-host", &[]))),
+                ("the example prints what it should on the chip", expected(&on_the_chip)),
+                ("the library has the golden costs", costs.and_then(|costs| golden.near("c-library.run", &costs))),
+            ]
+        }
     };
     for (name, outcome) in checks {
         println!("test C: {name} ... {}", if outcome.is_ok() { "ok" } else { "FAILED" });
@@ -52,33 +59,54 @@ fn examples() -> PathBuf {
     repository().join("firmware/examples/c")
 }
 
-/// Standard output of a command that succeeds; its standard error is shown.
-fn output(command: &mut Command) -> Result<String, String> {
-    let described = format!("{command:?}");
-    let output = command.stderr(Stdio::inherit()).output().map_err(|error| format!("{described}: {error}"))?;
-    if output.status.success() {
-        String::from_utf8(output.stdout).map_err(|error| format!("{described}: {error}"))
-    } else {
-        Err(format!("{described}: {}", output.status))
-    }
+/// What a command printed.
+struct Printed {
+    output: String,
+    /// To standard error, which is shown, too.
+    errors: String,
 }
 
-fn make(goal: &str, environment: &[(String, String)]) -> Result<String, String> {
+/// Runs a command that must succeed.
+fn run(command: &mut Command) -> Result<Printed, String> {
+    let described = format!("{command:?}");
+    let ran = command.output().map_err(|error| format!("{described}: {error}"))?;
+    let errors = String::from_utf8_lossy(&ran.stderr).into_owned();
+    eprint!("{errors}");
+    if !ran.status.success() {
+        return Err(format!("{described}: {}", ran.status));
+    }
+    let output = String::from_utf8(ran.stdout).map_err(|error| format!("{described}: {error}"))?;
+    Ok(Printed { output, errors })
+}
+
+fn make(goal: &str, environment: &[(String, String)]) -> Result<Printed, String> {
     let mut command = Command::new("make");
     command.args(["--silent", "--no-print-directory", goal]).envs(environment.iter().cloned());
-    output(command.current_dir(examples()))
+    run(command.current_dir(examples()))
+}
+
+/// A golden file's lines: bytes of the library, from what `size` printed, and of stack, from what the chip did.
+fn costs(on_the_chip: &Result<Printed, String>, size: Result<Printed, String>) -> Result<String, String> {
+    let size = size?.output;
+    let text = size.lines().nth(1).and_then(|line| line.split_whitespace().next());
+    let text = text.ok_or_else(|| format!("no size in {size:?}"))?;
+    let errors = &on_the_chip.as_ref().map_err(Clone::clone)?.errors;
+    let stack = errors.lines().filter(|line| line.contains("bytes of stack"));
+    let stack = stack.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    let lines = [format!("code and constants, bytes: {text}")].into_iter().chain(stack);
+    Ok(lines.map(|line| line + "\n").collect())
 }
 
 fn header() -> Result<(), String> {
     let flags = ["-x", "c++", "-std=c++11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"];
-    output(Command::new("c++").args(flags).arg(repository().join("firmware/c/include/grn.h"))).map(drop)
+    run(Command::new("c++").args(flags).arg(repository().join("firmware/c/include/grn.h"))).map(drop)
 }
 
-fn example(goal: &str, environment: &[(String, String)]) -> Result<(), String> {
+fn expected(ran: &Result<Printed, String>) -> Result<(), String> {
+    let printed = &ran.as_ref().map_err(Clone::clone)?.output;
     let expected = examples().join("expected.txt");
     let expected = fs::read_to_string(&expected).map_err(|error| format!("{}: {error}", expected.display()))?;
-    let printed = make(goal, environment)?;
-    if printed == expected {
+    if *printed == expected {
         return Ok(());
     }
     let differs = (1..).zip(printed.lines().zip(expected.lines())).find(|(_, (printed, expected))| printed != expected);

@@ -16,14 +16,14 @@ const HELP: &str = "cargo xtask TASK
          and compare what they print with firmware/golden; a part of test. --bless writes these files anew
   c [--bless]
          test the C library and its examples, on this machine and on an emulated chip; a part of test. --bless writes its
-         header and the examples' expected output anew
+         header, the examples' expected output and the library's golden costs anew
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
-  fuzz   feed the blob decoder 10 million mutated inputs, then 10 million of libFuzzer's
-         (the second part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
+  fuzz   feed the blob decoder 10 million mutated inputs and a robot 10 million random frames, then the decoder 10 million
+         inputs of libFuzzer's (this part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
 ";
 
 fn main() -> ExitCode {
@@ -111,7 +111,7 @@ fn c_library(bless: bool, tally: &mut Tally) -> bool {
         tests.env("GRN_BLESS", "1");
     }
     let succeeded = tally.follow(&mut tests);
-    c_examples::check(tally);
+    c_examples::check(bless, tally);
     succeeded
 }
 
@@ -129,10 +129,12 @@ fn reproduce() -> bool {
 
 fn fuzz() -> bool {
     const INPUTS: &str = "10000000";
-    let mutated = cargo(
-        &["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"],
-        &[("GRN_FUZZ_INPUTS", INPUTS)],
-    );
+    let variables = [("GRN_FUZZ_INPUTS", INPUTS)];
+    let decoder = ["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"];
+    // With the checks of the test profile: a robot must not even come near an overflow.
+    let link =
+        ["test", "--package", "grn-tests", "--test", "link", "no_frame_makes_a_robot_panic", "--", "--nocapture"];
+    let random = [cargo(&decoder, &variables), cargo(&link, &variables)] == [true; 2];
     let ready = Command::new("cargo").args(["+nightly", "fuzz", "--version"]).output();
     if !ready.is_ok_and(|output| output.status.success()) {
         eprintln!(
@@ -144,5 +146,5 @@ fn fuzz() -> bool {
     let runs = format!("-runs={INPUTS}");
     let guided =
         Command::new("cargo").args(["+nightly", "fuzz", "run", "decode", "--", &runs, "-max_len=512"]).status();
-    mutated && guided.is_ok_and(|status| status.success())
+    random && guided.is_ok_and(|status| status.success())
 }

@@ -112,21 +112,24 @@ impl GrnController {
 pub fn load(bytes: &[u8], number: i32, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
     const F32: i32 = GrnNumber::F32 as i32;
     const Q: i32 = GrnNumber::Q8_24 as i32;
-    let blob = Blob::decode(bytes)?;
+    let blob = Blob::decode(bytes);
+    let blob = blob.as_ref().map_err(|&error| error)?;
     match number {
-        F32 => build::<f32>(&blob, robot, storage),
-        Q => build::<Q8_24>(&blob, robot, storage),
+        F32 => build::<f32>(blob, robot, storage),
+        Q => build::<Q8_24>(blob, robot, storage),
         _ => Err(GrnStatus::UnknownNumber),
     }
 }
 
-// Not inlined, one function a number type: so the stack holds what one of them needs, not both at once.
+// Not inlined, one function a number type: so the stack holds what one of them needs, not both at once. And what is large
+// is not moved out of its `Result`, which would put it there twice.
 
 #[inline(never)]
 fn build<S: Number>(blob: &Blob, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
-    let controller = Controller::<S>::new(blob, robot)?;
-    if let Some(storage) = storage {
-        storage.fill(controller);
+    match (Controller::<S>::new(blob, robot), storage) {
+        (Ok(controller), Some(storage)) => storage.fill(controller),
+        (Ok(_), None) => {}
+        (Err(error), _) => return Err(error.into()),
     }
     Ok(())
 }

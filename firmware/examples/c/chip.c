@@ -56,22 +56,26 @@ static void print_bytes(const char *what, uint32_t number) {
     print(digits);
 }
 
-static void measure_stack(GrnNumber number) {
+static void measure_stack(GrnNumber number, const char *name) {
     static GrnController controller;
     static GrnCommand command;
     static const GrnPercept percept = {.target_count = 1, .obstacle_count = 1, .heard_count = 1};
     paint_stack();
     grn_load(&controller, sizeof controller, blob, (size_t)(blob_end - blob), number, 0);
-    print_bytes("bytes of stack, grn_load:", used_stack());
+    uint32_t load = used_stack();
     paint_stack();
     grn_tick(&controller, &percept, &command);
-    print_bytes("bytes of stack, grn_tick:", used_stack());
+    uint32_t tick = used_stack();
+    print(name);
+    print_bytes(" grn_load, bytes of stack:", load);
+    print(name);
+    print_bytes(" grn_tick, bytes of stack:", tick);
 }
 
 static int run(void) {
     handle = console(APPEND);
-    measure_stack(GRN_NUMBER_F32);
-    measure_stack(GRN_NUMBER_Q8_24);
+    measure_stack(GRN_NUMBER_F32, "f32");
+    measure_stack(GRN_NUMBER_Q8_24, "q8.24");
     handle = console(WRITE);
     return scene(blob, (size_t)(blob_end - blob), print);
 }

@@ -12,6 +12,8 @@ pub mod board;
 mod panic;
 #[cfg(target_abi = "eabihf")]
 pub mod robot;
+#[cfg(target_abi = "eabihf")]
+pub mod session;
 pub mod text;
 
 /// Makes a function the image's entry: `fn() -> u8` ends the emulation with its exit code, `fn() -> !` never ends.

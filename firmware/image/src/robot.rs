@@ -1,22 +1,34 @@
-//! The robot: its controller and slots, served over the first serial port.
+//! The robot: its controller and slots, served over a port.
 
+use crate::board::print;
 use crate::board::slots::{SLOT, SlotMemory};
-use crate::board::{print, uart};
 use grn_core::robot::link::Server;
 use grn_core::robot::link::message::Arithmetic;
 use grn_core::robot::slots::Layout;
 use grn_core::scalar::Scalar;
 
-/// Serves the link for ever; an exit code if the slots cannot be used.
-pub fn serve<S: Scalar>(arithmetic: Arithmetic, slots: SlotMemory) -> u8 {
-    let Ok(mut server) = Server::<_, S>::start(slots, Layout::adjacent(SLOT), "netduinoplus2", arithmetic) else {
+/// What carries a robot's bytes.
+pub trait Port {
+    /// Gets ready; bytes that arrive before are lost.
+    fn start(&mut self);
+    /// Waits for the next byte; `None` if none will ever come.
+    fn read(&mut self) -> Option<u8>;
+    /// Sends all bytes.
+    fn write(&mut self, bytes: &[u8]);
+}
+
+/// Serves the link while bytes come; false if the slots cannot be used.
+pub fn serve<S: Scalar>(arithmetic: Arithmetic, slots: SlotMemory, port: &mut impl Port) -> bool {
+    // Taken by reference: moved out of its `Result` it would be on the stack twice.
+    let Ok(server) = &mut Server::<_, S>::start(slots, Layout::adjacent(SLOT), "netduinoplus2", arithmetic) else {
         print("the slots cannot be used\n");
-        return 1;
+        return false;
     };
-    uart::start();
-    loop {
-        if let Some(answer) = server.receive(uart::read()) {
-            uart::write(answer);
+    port.start();
+    while let Some(byte) = port.read() {
+        if let Some(answer) = server.receive(byte) {
+            port.write(answer);
         }
     }
+    true
 }

@@ -79,7 +79,7 @@ impl fmt::Display for BlobError {
         match *self {
             BlobError::Truncated => write!(f, "the blob is cut short; copy or upload it again"),
             BlobError::NotABlob { found } => {
-                write!(f, "not a GRN blob: it begins with bytes {found:02x?} instead of \"GRNb\"")
+                write!(f, "not a GRN blob: it begins with bytes {found:02x?} instead of \"GRNb\"; choose a .grn file")
             }
             BlobError::Version { found } if found > FORMAT_VERSION => {
                 write!(
@@ -99,14 +99,19 @@ impl fmt::Display for BlobError {
             BlobError::Crc { stored, computed } => {
                 write!(f, "CRC-32 {computed:08x} where {stored:08x} is stored: damaged; copy or upload it again")
             }
-            BlobError::Identity => write!(f, "the stored identity is not the hash of the content: damaged or forged"),
+            BlobError::Identity => write!(
+                f,
+                "the stored identity is not the hash of the content: damaged or forged; copy or upload it again"
+            ),
             BlobError::Convention(found) => {
                 write!(
                     f,
                     "unknown convention {found} for frame, units and normalisation: update the software that reads it"
                 )
             }
-            BlobError::Malformed => write!(f, "the payload does not have the shape of a controller"),
+            BlobError::Malformed => {
+                write!(f, "the payload does not have the shape of a controller; write the blob again")
+            }
             BlobError::Opcode { gene, opcode } => write!(f, "gene {gene}: {opcode} is no motif's opcode (1 to 10)"),
             BlobError::Kernel(code) => write!(f, "kernel {code} is neither gaussian (1) nor exponential (2)"),
             BlobError::Step(error) => error.fmt(f),

@@ -88,20 +88,22 @@ impl<const N: usize> Payload<N> {
         }
     }
 
+    /// The blob, whose parameters may still be out of range.
     #[inline(never)]
-    pub(super) fn into_blob(self) -> Result<Blob<N>, BlobError> {
-        let mut genes: Vec<Gene<f32>, N> = Vec::new();
-        for (index, gene) in self.genes.iter().enumerate() {
-            let fault = BlobError::Opcode { gene: index, opcode: gene.opcode };
-            let gene = Gene {
-                motif: Motif::from_opcode(gene.opcode).ok_or(fault)?,
+    pub(super) fn to_blob(&self) -> Result<Blob<N>, BlobError> {
+        let unknown = self.genes.iter().enumerate().find(|(_, gene)| Motif::from_opcode(gene.opcode).is_none());
+        if let Some((index, gene)) = unknown {
+            return Err(BlobError::Opcode { gene: index, opcode: gene.opcode });
+        }
+        let genes = self.genes.iter().filter_map(|gene| {
+            Some(Gene {
+                motif: Motif::from_opcode(gene.opcode)?,
                 inputs: filled(gene.inputs.iter().map(|&code| Source::from_code(code))),
                 theta: gene.theta,
-            };
-            genes.push(gene).map_err(|_| BlobError::Malformed)?;
-        }
-        let blob = Blob {
-            network: Network::new(self.steepness, genes.iter().cloned()).map_err(BlobError::Network)?,
+            })
+        });
+        Ok(Blob {
+            network: Network::new(self.steepness, genes).map_err(BlobError::Network)?,
             field: FieldParameters {
                 kernel: Kernel::from_code(self.kernel).ok_or(BlobError::Kernel(self.kernel))?,
                 target_width: self.target_width,
@@ -121,9 +123,7 @@ impl<const N: usize> Payload<N> {
                 cruise: self.cruise,
                 turn: self.turn,
             },
-        };
-        blob.check()?;
-        Ok(blob)
+        })
     }
 
     /// Writes to the front of `buffer`; `None` if it is too small.

@@ -74,6 +74,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
     ///
     /// # Errors
     /// See [`LoadError`].
+    #[inline(never)]
     pub fn new(blob: &Blob<N>, robot: u8) -> Result<Self, LoadError> {
         let network = blob.network.cast();
         let pattern = Pattern::of(&network, S::from_f32(blob.level_fraction)).map_err(LoadError::NoPattern)?;

@@ -1,26 +1,21 @@
-//! What is in an image: as much of the ELF format as sizes and symbols need (32 bits, little-endian).
+//! What is in an image: sizes and symbols.
 
+use object::elf::{SHF_ALLOC, SHF_EXECINSTR, SHF_WRITE, SHT_NOBITS};
+use object::{Object, ObjectSection, ObjectSymbol, SectionFlags};
 use std::fmt;
 use std::fs;
 use std::path::Path;
 
-/// An image's file.
+/// What an image's file says about itself.
 pub struct Elf {
-    bytes: Vec<u8>,
-    sections: Vec<Section>,
-}
-
-#[derive(Clone, Copy)]
-struct Section {
-    name: usize,
-    kind: u32,
-    flags: u32,
-    offset: usize,
-    size: usize,
-    link: usize,
+    /// Sizes of what is loaded or reserved.
+    pub sizes: Sizes,
+    /// Names of all symbols, as the linker knows them.
+    pub symbols: Vec<String>,
 }
 
 /// Bytes of each sort.
+#[derive(Default)]
 pub struct Sizes {
     /// Instructions: `.text`.
     pub code: usize,
@@ -43,6 +38,26 @@ impl Sizes {
         let Sizes { code, constants, data, zeroed } = self;
         format!("text {code}\nrodata {constants}\ndata {data}\nbss {zeroed}\n")
     }
+
+    /// Adds up the sections of an image.
+    fn of(file: &object::File) -> object::Result<Sizes> {
+        let mut sizes = Sizes::default();
+        for section in file.sections() {
+            let SectionFlags::Elf { sh_type, sh_flags } = section.flags() else { continue };
+            if !sh_flags.contains(SHF_ALLOC) || section.name()? == ".slots" {
+                continue;
+            }
+            let (executed, written) = (sh_flags.contains(SHF_EXECINSTR), sh_flags.contains(SHF_WRITE));
+            let sum = match (executed, written) {
+                (true, _) => &mut sizes.code,
+                (false, false) => &mut sizes.constants,
+                (false, true) if sh_type == SHT_NOBITS => &mut sizes.zeroed,
+                (false, true) => &mut sizes.data,
+            };
+            *sum += section.size() as usize;
+        }
+        Ok(sizes)
+    }
 }
 
 impl fmt::Display for Sizes {
@@ -51,82 +66,16 @@ impl fmt::Display for Sizes {
     }
 }
 
-const SYMBOL_TABLE: u32 = 2;
-const NO_BITS: u32 = 8;
-const WRITE: u32 = 1;
-const ALLOCATED: u32 = 2;
-const EXECUTABLE: u32 = 4;
-const SYMBOL_BYTES: usize = 16;
-
 impl Elf {
     /// Reads a file.
     pub fn read(path: &Path) -> Result<Elf, String> {
-        let wrong = |what: &dyn fmt::Display| format!("{}: {what}", path.display());
-        let bytes = fs::read(path).map_err(|error| wrong(&error))?;
-        if !bytes.starts_with(b"\x7fELF\x01\x01") {
-            return Err(wrong(&"not a little-endian 32-bit ELF file"));
-        }
-        let mut elf = Elf { bytes, sections: Vec::new() };
-        elf.sections = elf.section_headers().ok_or_else(|| wrong(&"its section headers are damaged"))?;
-        Ok(elf)
+        let bytes = fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+        Elf::parse(&bytes).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    fn section_headers(&self) -> Option<Vec<Section>> {
-        let start = self.word(0x20)?;
-        let (size, count) = (self.half(0x2e)?, self.half(0x30)?);
-        let header = |index: usize| {
-            let field = |number: usize| self.word(start + index * size + 4 * number);
-            Some(Section {
-                name: field(0)?,
-                kind: field(1)? as u32,
-                flags: field(2)? as u32,
-                offset: field(4)?,
-                size: field(5)?,
-                link: field(6)?,
-            })
-        };
-        (0..count).map(header).collect()
-    }
-
-    /// Sizes of what is loaded or reserved.
-    pub fn sizes(&self) -> Sizes {
-        let names = self.half(0x32).and_then(|index| self.sections.get(index));
-        let of_name = |section: &&Section| names.and_then(|names| self.string(names, section.name)) != Some(".slots");
-        let sum = |of_sort: &dyn Fn(&Section) -> bool| {
-            let sections = self.sections.iter().filter(|section| section.flags & ALLOCATED != 0).filter(of_name);
-            sections.filter(|section| of_sort(section)).map(|section| section.size).sum()
-        };
-        let written = |section: &Section| section.flags & WRITE != 0;
-        let executed = |section: &Section| section.flags & EXECUTABLE != 0;
-        Sizes {
-            code: sum(&executed),
-            constants: sum(&|section| !executed(section) && !written(section)),
-            data: sum(&|section| written(section) && section.kind != NO_BITS),
-            zeroed: sum(&|section| written(section) && section.kind == NO_BITS),
-        }
-    }
-
-    /// Names of all symbols, as the linker knows them.
-    pub fn symbols(&self) -> impl Iterator<Item = &str> {
-        let tables = self.sections.iter().filter(|section| section.kind == SYMBOL_TABLE);
-        tables.flat_map(move |table| {
-            let names = self.sections.get(table.link);
-            (0..table.size / SYMBOL_BYTES)
-                .filter_map(move |index| self.string(names?, self.word(table.offset + index * SYMBOL_BYTES)?))
-        })
-    }
-
-    fn string(&self, table: &Section, at: usize) -> Option<&str> {
-        let bytes = self.bytes.get(table.offset + at..)?;
-        std::str::from_utf8(bytes.split(|&byte| byte == 0).next()?).ok()
-    }
-
-    fn word(&self, at: usize) -> Option<usize> {
-        let bytes = self.bytes.get(at..)?.first_chunk()?;
-        usize::try_from(u32::from_le_bytes(*bytes)).ok()
-    }
-
-    fn half(&self, at: usize) -> Option<usize> {
-        self.bytes.get(at..)?.first_chunk().map(|bytes| usize::from(u16::from_le_bytes(*bytes)))
+    fn parse(bytes: &[u8]) -> object::Result<Elf> {
+        let file = object::File::parse(bytes)?;
+        let symbols = file.symbols().map(|symbol| symbol.name().map(str::to_owned)).collect::<Result<_, _>>()?;
+        Ok(Elf { sizes: Sizes::of(&file)?, symbols })
     }
 }

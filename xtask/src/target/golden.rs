@@ -3,13 +3,17 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// How far a size or a cost may be from its golden value, per cent: compilers differ a little, and so do their versions.
-const TOLERANCE: usize = 2;
+/// How far a size or a cost may be from its golden value, per cent: versions of the compiler differ by up to 4.
+const TOLERANCE: usize = 5;
 
-/// The golden files in `folder`; with `bless` they are written instead of compared with.
+/// Golden files.
 pub struct Golden {
+    /// Where they are.
     pub folder: PathBuf,
+    /// Write them instead of comparing with them.
     pub bless: bool,
+    /// The task that does so when asked to.
+    pub task: &'static str,
 }
 
 impl Golden {
@@ -31,9 +35,9 @@ impl Golden {
         if differences.is_empty() {
             return Ok(());
         }
-        let all = differences.join("\n");
+        let (all, task) = (differences.join("\n"), self.task);
         Err(format!(
-            "{all}\nmore than {TOLERANCE} % off firmware/golden/{file}: if that is meant, cargo xtask target --bless"
+            "{all}\nmore than {TOLERANCE} % off firmware/golden/{file}: if that is meant, cargo xtask {task} --bless"
         ))
     }
 }
@@ -77,8 +81,8 @@ mod tests {
 
     #[test]
     fn values_may_be_a_little_off_but_not_their_names() {
-        assert!(line_near("f32 tick 10000", "f32 tick 10200") && line_near("stack 100 bytes", "stack 98 bytes"));
-        assert!(!line_near("f32 tick 10000", "f32 tick 10201") && !line_near("f32 tick 100", "f32 tock 100"));
+        assert!(line_near("f32 tick 10000", "f32 tick 10500") && line_near("stack 100 bytes", "stack 95 bytes"));
+        assert!(!line_near("f32 tick 10000", "f32 tick 10501") && !line_near("f32 tick 100", "f32 tock 100"));
         assert!(line_near("bss 0", "bss 0") && !line_near("bss 0", "bss 1"));
         assert_eq!(value("text 7\nstack 5 bytes\n", "stack"), Some(5));
     }

@@ -96,9 +96,9 @@ pub fn programs(wanted: &[(&str, &[&'static str])]) -> Result<(), String> {
 fn install(packages: &[&str]) -> Result<(), String> {
     let arguments = ["install", "-y", "--no-install-recommends", "--allow-downgrades"];
     println!("apt-get {} {}", arguments.join(" "), packages.join(" "));
-    let installed = succeeds(Command::new("apt-get").arg("update"))
-        && succeeds(Command::new("apt-get").args(arguments).args(packages).env("DEBIAN_FRONTEND", "noninteractive"));
-    if installed {
+    // Though it fails where any source cannot be reached, what is needed may come from the others.
+    succeeds(Command::new("apt-get").arg("update"));
+    if succeeds(Command::new("apt-get").args(arguments).args(packages).env("DEBIAN_FRONTEND", "noninteractive")) {
         return Ok(());
     }
     Err(format!(

@@ -3,12 +3,14 @@
 #![no_main]
 
 use grn_core::robot::link::message::Arithmetic;
-use grn_firmware::{board::slots::SlotMemory, robot};
+use grn_firmware::board::slots::SlotMemory;
+use grn_firmware::board::uart::Uart;
+use grn_firmware::robot;
 
 grn_firmware::entry!(main);
 
 fn main() -> u8 {
     // SAFETY: this is the only one.
     let slots = unsafe { SlotMemory::take() };
-    robot::serve::<f32>(Arithmetic::F32, slots)
+    u8::from(!robot::serve::<f32>(Arithmetic::F32, slots, &mut Uart))
 }

@@ -4,12 +4,14 @@
 
 use grn_core::robot::link::message::Arithmetic;
 use grn_core::scalar::Q8_24;
-use grn_firmware::{board::slots::SlotMemory, robot};
+use grn_firmware::board::slots::SlotMemory;
+use grn_firmware::board::uart::Uart;
+use grn_firmware::robot;
 
 grn_firmware::entry!(main);
 
 fn main() -> u8 {
     // SAFETY: this is the only one.
     let slots = unsafe { SlotMemory::take() };
-    robot::serve::<Q8_24>(Arithmetic::Q8_24, slots)
+    u8::from(!robot::serve::<Q8_24>(Arithmetic::Q8_24, slots, &mut Uart))
 }

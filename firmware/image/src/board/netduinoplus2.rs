@@ -22,6 +22,7 @@ impl Register {
 /// USART1, the emulator's first serial port, byte by byte.
 pub mod uart {
     use super::Register;
+    use crate::robot::Port;
 
     const STATUS: Register = Register::at(0x4001_1000);
     const DATA: Register = Register::at(0x4001_1004);
@@ -35,36 +36,35 @@ pub mod uart {
     const INTERRUPT_CLEAR: Register = Register::at(0xe000_e284);
     const INTERRUPT: u32 = 1 << 5;
 
-    /// Switches sender and receiver on. Bytes that arrive before are lost: say something first.
-    pub fn start() {
-        // SAFETY: an interrupt only wakes the processor; with interrupts masked it is not served.
-        unsafe { core::arch::asm!("cpsid i", options(nomem, nostack)) };
-        INTERRUPT_ENABLE.write(INTERRUPT);
-        CONTROL.write(ENABLE);
-    }
+    /// USART1.
+    pub struct Uart;
 
-    /// The next byte, if one has arrived.
-    pub fn poll() -> Option<u8> {
-        (STATUS.read() & RECEIVED != 0).then(|| DATA.read() as u8)
-    }
-
-    /// Waits for the next byte, asleep.
-    pub fn read() -> u8 {
-        loop {
-            INTERRUPT_CLEAR.write(INTERRUPT);
-            if let Some(byte) = poll() {
-                return byte;
-            }
-            // SAFETY: it waits for an interrupt to be pending, that of a byte among them.
-            unsafe { core::arch::asm!("wfi", options(nomem, nostack)) };
+    impl Port for Uart {
+        /// Switches sender and receiver on: say something first.
+        fn start(&mut self) {
+            // SAFETY: an interrupt only wakes the processor; with interrupts masked it is not served.
+            unsafe { core::arch::asm!("cpsid i", options(nomem, nostack)) };
+            INTERRUPT_ENABLE.write(INTERRUPT);
+            CONTROL.write(ENABLE);
         }
-    }
 
-    /// Sends all bytes.
-    pub fn write(bytes: &[u8]) {
-        for &byte in bytes {
-            while STATUS.read() & TRANSMIT_EMPTY == 0 {}
-            DATA.write(u32::from(byte));
+        /// Waits asleep; there is always a next byte.
+        fn read(&mut self) -> Option<u8> {
+            loop {
+                INTERRUPT_CLEAR.write(INTERRUPT);
+                if STATUS.read() & RECEIVED != 0 {
+                    return Some(DATA.read() as u8);
+                }
+                // SAFETY: it waits for an interrupt to be pending, that of a byte among them.
+                unsafe { core::arch::asm!("wfi", options(nomem, nostack)) };
+            }
+        }
+
+        fn write(&mut self, bytes: &[u8]) {
+            for &byte in bytes {
+                while STATUS.read() & TRANSMIT_EMPTY == 0 {}
+                DATA.write(u32::from(byte));
+            }
         }
     }
 }

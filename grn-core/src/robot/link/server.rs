@@ -1,4 +1,6 @@
 //! The robot's side of the link.
+//!
+//! What requests do is not inlined: the stack holds what one of them needs, not what all of them need.
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
@@ -6,7 +8,7 @@ use super::message::{
     Reset, RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
 };
 use super::refusal::Refusal;
-use crate::blob::{Blob, FORMAT_VERSION};
+use crate::blob::{Blob, FORMAT_VERSION, Identity};
 use crate::network::DEFAULT_GENES;
 use crate::robot::controller::Controller;
 use crate::robot::percept::{Command, Percept};
@@ -41,9 +43,15 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
     ///
     /// # Errors
     /// [`SlotError::Layout`], or what the flash says.
+    #[inline(never)]
     pub fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
-        let robot = Robot::start(flash, layout, name, arithmetic)?;
-        Ok(Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot })
+        let slots = Slots::start(flash, layout, |blob| loads::<S>(blob).is_ok())?;
+        let name = String::try_from(name).unwrap_or_default();
+        let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, arithmetic };
+        let mut server = Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot };
+        // Without a blob in charge the robot waits for one.
+        let _ = server.robot.reset(0);
+        Ok(server)
     }
 
     /// Takes the next byte from the link. Bytes to send, if it ended a request.
@@ -85,14 +93,7 @@ struct Robot<F, S> {
 }
 
 impl<F: NorFlash, S: Scalar> Robot<F, S> {
-    fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
-        let sound = |blob: &Blob| Controller::<S>::new(blob, 0).is_ok();
-        let (slots, blob) = Slots::start(flash, layout, sound)?;
-        let controller = blob.and_then(|blob| Controller::new(&blob, 0).ok());
-        let name = String::try_from(name).unwrap_or_default();
-        Ok(Robot { slots, controller, ticks: 0, number: 0, name, arithmetic })
-    }
-
+    #[inline(never)]
     fn respond(&mut self, frame: &Frame<'_>) -> Result<Vec<u8, MAX_WIRE>, TooLong> {
         match frame.operation {
             Identify::OPERATION => answer(frame, |Identify| Ok(self.about())),
@@ -100,15 +101,9 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
             Begin::OPERATION => answer(frame, |Begin { length, identity }| Ok(self.slots.begin(length, identity)?)),
             Chunk::OPERATION => answer(frame, |Chunk { offset, bytes }| Ok(self.slots.chunk(offset, &bytes)?)),
             Commit::OPERATION => answer(frame, |Commit| self.commit()),
-            Activate::OPERATION => answer(frame, |Activate { identity }| {
-                let blob = self.slots.activate(identity)?;
-                self.load(&blob)
-            }),
+            Activate::OPERATION => answer(frame, |Activate { identity }| self.activate(identity)),
             Confirm::OPERATION => answer(frame, |Confirm { identity }| Ok(self.slots.confirm(identity)?)),
-            RollBack::OPERATION => answer(frame, |RollBack { identity }| {
-                let blob = self.slots.roll_back(identity)?;
-                self.load(&blob)
-            }),
+            RollBack::OPERATION => answer(frame, |RollBack { identity }| self.roll_back(identity)),
             Reset::OPERATION => answer(frame, |Reset { robot }| self.reset(robot)),
             Percept::OPERATION => answer(frame, |percept: Percept| self.tick(&percept)),
             _ => refuse(frame, Refusal::Unknown),
@@ -132,24 +127,45 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     }
 
     /// A blob that cannot drive this robot is not marked as verified.
+    #[inline(never)]
     fn commit(&mut self) -> Result<(), Refusal> {
-        let loads = |blob: &Blob| Controller::<S>::new(blob, 0).map(|_| ()).map_err(Refusal::from);
-        self.slots.commit(loads)
+        self.slots.commit(loads::<S>)
     }
 
-    fn load(&mut self, blob: &Blob) -> Result<(), Refusal> {
-        self.controller = Some(Controller::new(blob, self.number)?);
+    #[inline(never)]
+    fn activate(&mut self, identity: Identity) -> Result<(), Refusal> {
+        self.slots.activate(identity)?;
+        self.reset(self.number)?;
         self.ticks = 0;
         Ok(())
     }
 
+    #[inline(never)]
+    fn roll_back(&mut self, identity: Identity) -> Result<(), Refusal> {
+        self.slots.roll_back(identity)?;
+        self.reset(self.number)?;
+        self.ticks = 0;
+        Ok(())
+    }
+
+    #[inline(never)]
     fn reset(&mut self, number: u8) -> Result<(), Refusal> {
-        let blob = self.slots.blob_in_charge()?.ok_or(Refusal::NoController)?;
-        self.controller = Some(Controller::new(&blob, number)?);
+        let blob = self.slots.blob_in_charge();
+        let blob = blob.as_ref().map_err(|&error| error)?.as_ref().ok_or(Refusal::NoController)?;
+        self.load(blob, number)
+    }
+
+    #[inline(never)]
+    fn load(&mut self, blob: &Blob, number: u8) -> Result<(), Refusal> {
+        match Controller::new(blob, number) {
+            Ok(controller) => self.controller = Some(controller),
+            Err(error) => return Err(error.into()),
+        }
         self.number = number;
         Ok(())
     }
 
+    #[inline(never)]
     fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
         let command = controller.tick(percept);
@@ -158,6 +174,14 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
             self.slots.confirm(controller.identity())?;
         }
         Ok(command)
+    }
+}
+
+#[inline(never)]
+fn loads<S: Scalar>(blob: &Blob) -> Result<(), Refusal> {
+    match Controller::<S>::new(blob, 0) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(error.into()),
     }
 }
 

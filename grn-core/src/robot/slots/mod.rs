@@ -107,12 +107,12 @@ pub struct Slots<F> {
 }
 
 impl<F: NorFlash> Slots<F> {
-    /// The slots as the robot finds them at its start, and the blob in charge; a blob still on trial is rejected if there
-    /// is one to fall back to. `sound` says whether a blob can drive this robot.
+    /// The slots as the robot finds them at its start; a blob still on trial is rejected if there is one to fall back to.
+    /// `sound` says whether a blob can drive this robot.
     ///
     /// # Errors
     /// [`SlotError::Layout`], or what the flash says.
-    pub fn start(flash: F, layout: Layout, sound: impl Fn(&Blob) -> bool) -> Result<(Self, Option<Blob>), SlotError> {
+    pub fn start(flash: F, layout: Layout, sound: impl Fn(&Blob) -> bool) -> Result<Self, SlotError> {
         if !layout.fits(&flash) {
             return Err(SlotError::Layout);
         }
@@ -120,23 +120,20 @@ impl<F: NorFlash> Slots<F> {
         let mut in_charge = None;
         for slot in slots.newest_first()? {
             let status = slots.slot_status(slot)?;
-            if !matches!(status.stage, Stage::Trial | Stage::Confirmed) {
+            let candidate = matches!(status.stage, Stage::Trial | Stage::Confirmed);
+            if !candidate || !slots.is_sound(slot, status.length, &sound)? {
                 continue;
             }
-            let Ok(blob) = slots.blob(slot, status.length)? else { continue };
-            if !sound(&blob) {
-                continue;
-            }
-            if let Some((on_trial, Stage::Trial, _)) = in_charge
+            if let Some((on_trial, Stage::Trial)) = in_charge
                 && status.stage == Stage::Confirmed
             {
                 slots.mark(on_trial, Mark::Rejected)?;
                 in_charge = None;
             }
-            in_charge = in_charge.or(Some((slot, status.stage, blob)));
+            in_charge = in_charge.or(Some((slot, status.stage)));
         }
-        slots.active = in_charge.as_ref().map(|(slot, ..)| *slot);
-        Ok((slots, in_charge.map(|(.., blob)| blob)))
+        slots.active = in_charge.map(|(slot, _)| slot);
+        Ok(slots)
     }
 
     /// The flash, giving up the slots.
@@ -171,8 +168,8 @@ impl<F: NorFlash> Slots<F> {
     /// [`SlotError::Blob`] if it was sound when the robot started but is no longer, or what the flash says.
     pub fn blob_in_charge(&mut self) -> Result<Option<Blob>, SlotError> {
         let Some(slot) = self.active else { return Ok(None) };
-        let status = self.slot_status(slot)?;
-        self.blob(slot, status.length)?.map(Some).map_err(SlotError::Blob)
+        let length = self.slot_status(slot)?.length;
+        self.blob(slot, length).map(Some)
     }
 
     /// Erases the slot that is not in charge for a blob of `length` bytes.
@@ -237,11 +234,12 @@ impl<F: NorFlash> Slots<F> {
             return Err(SlotError::Chunk { expected: upload.written }.into());
         }
         self.upload = None;
-        let blob = self.blob(upload.slot, upload.header.length)?.map_err(SlotError::Blob)?;
+        let blob = self.blob(upload.slot, upload.header.length);
+        let blob = blob.as_ref().map_err(|&error| error)?;
         if blob.identity() != upload.header.identity {
             return Err(SlotError::OtherBlob.into());
         }
-        check(&blob)?;
+        check(blob)?;
         Ok(self.mark(upload.slot, Mark::Verified)?)
     }
 
@@ -249,19 +247,19 @@ impl<F: NorFlash> Slots<F> {
     ///
     /// # Errors
     /// [`SlotError::NotThere`], [`SlotError::Blob`], or what the flash says.
-    pub fn activate(&mut self, identity: Identity) -> Result<Blob, SlotError> {
+    pub fn activate(&mut self, identity: Identity) -> Result<(), SlotError> {
         if self.active_status()?.is_some_and(|status| status.identity == identity) {
-            return self.blob_in_charge()?.ok_or(SlotError::NotThere);
+            return Ok(());
         }
         let slot = self.active.map_or(0, |active| 1 - active);
         let status = self.slot_status(slot)?;
         if status.stage != Stage::Verified || status.identity != identity {
             return Err(SlotError::NotThere);
         }
-        let blob = self.blob(slot, status.length)?.map_err(SlotError::Blob)?;
+        self.check(slot, status.length)?;
         self.mark(slot, Mark::Activated)?;
         self.active = Some(slot);
-        Ok(blob)
+        Ok(())
     }
 
     /// Ends the trial of the blob in charge: it stays.
@@ -282,22 +280,24 @@ impl<F: NorFlash> Slots<F> {
     ///
     /// # Errors
     /// [`SlotError::NotThere`] if no slot holds the blob, [`SlotError::NoFallback`], or what the flash says.
-    pub fn roll_back(&mut self, identity: Identity) -> Result<Blob, SlotError> {
+    pub fn roll_back(&mut self, identity: Identity) -> Result<(), SlotError> {
         let slot = self.active.ok_or(SlotError::NotThere)?;
         let other = 1 - slot;
         let (status, fallback) = (self.slot_status(slot)?, self.slot_status(other)?);
         if status.identity != identity {
             let done = fallback.identity == identity && fallback.stage == Stage::Rejected;
-            let back = if done { self.blob_in_charge()? } else { None };
-            return back.ok_or(SlotError::NotThere);
+            return if done { Ok(()) } else { Err(SlotError::NotThere) };
         }
         if fallback.stage != Stage::Confirmed {
             return Err(SlotError::NoFallback);
         }
-        let blob = self.blob(other, fallback.length)?.map_err(|_| SlotError::NoFallback)?;
+        match self.check(other, fallback.length) {
+            Err(SlotError::Blob(_)) => return Err(SlotError::NoFallback),
+            checked => checked?,
+        }
         self.mark(slot, Mark::Rejected)?;
         self.active = Some(other);
-        Ok(blob)
+        Ok(())
     }
 
     fn newest_first(&mut self) -> Result<[usize; 2], SlotError> {
@@ -339,13 +339,32 @@ impl<F: NorFlash> Slots<F> {
         self.start_of(slot) + (HEADER + place * UNIT) as u32
     }
 
-    fn blob(&mut self, slot: usize, length: u32) -> Result<Result<Blob, BlobError>, SlotError> {
+    /// Whether the blob in a slot can be read and `sound` agrees.
+    #[inline(never)]
+    fn is_sound(&mut self, slot: usize, length: u32, sound: impl Fn(&Blob) -> bool) -> Result<bool, SlotError> {
+        match &self.blob(slot, length) {
+            Ok(blob) => Ok(sound(blob)),
+            Err(SlotError::Blob(_)) => Ok(false),
+            Err(error) => Err(*error),
+        }
+    }
+
+    /// Whether the blob in a slot can be read.
+    #[inline(never)]
+    fn check(&mut self, slot: usize, length: u32) -> Result<(), SlotError> {
+        match &self.blob(slot, length) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(*error),
+        }
+    }
+
+    #[inline(never)]
+    fn blob(&mut self, slot: usize, length: u32) -> Result<Blob, SlotError> {
         let mut bytes = [0; MAX_BLOB.next_multiple_of(UNIT)];
-        let padded = (length as usize).checked_next_multiple_of(UNIT);
-        let Some(padded) = padded.and_then(|padded| bytes.get_mut(..padded)) else {
-            return Ok(Err(BlobError::Truncated));
-        };
+        let padded = (length as usize).checked_next_multiple_of(UNIT).and_then(|padded| bytes.get_mut(..padded));
+        let padded = padded.ok_or(SlotError::Blob(BlobError::Truncated))?;
         self.flash.read(self.start_of(slot) + CONTENT, padded)?;
-        Ok(padded.get(..length as usize).map_or(Err(BlobError::Truncated), Blob::decode))
+        let bytes = padded.get(..length as usize).ok_or(SlotError::Blob(BlobError::Truncated))?;
+        Blob::decode(bytes).map_err(SlotError::Blob)
     }
 }

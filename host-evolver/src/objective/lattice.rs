@@ -68,6 +68,13 @@ impl Lattice {
         self.origin + offset * self.step
     }
 
+    /// The points of eight nodes from `first` on, a multiple of eight: they are in one row.
+    pub(super) fn run(&self, first: NodeIndex) -> [Point<f64>; WIDTH] {
+        let (column, row) = (first % self.columns, first / self.columns);
+        let offsets: [_; WIDTH] = std::array::from_fn(|lane| Vector::new((column + lane) as f64, row as f64));
+        offsets.map(|offset| self.origin + offset * self.step)
+    }
+
     /// The next node in a direction from a node that is not on the border.
     pub(super) fn neighbour(&self, node: NodeIndex, direction: Direction) -> NodeIndex {
         match direction.0 {

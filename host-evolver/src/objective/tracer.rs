@@ -30,14 +30,13 @@ pub struct Tracer<'w> {
     world: &'w World,
     coarse: Follower<Kept<'w>>,
     fine: Option<Follower<Computed<'w>>>,
-    chart: Chart,
     outline_leaks: bool,
 }
 
 impl<'w> Tracer<'w> {
     /// A tracer for one world.
     pub fn new(world: &'w World) -> Self {
-        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, chart: Chart::default(), outline_leaks: false }
+        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, outline_leaks: false }
     }
 
     /// A tracer that also fills [`Contours::leaks`], for drawing.
@@ -47,21 +46,32 @@ impl<'w> Tracer<'w> {
 
     /// The patterns of `model` at each snapshot of the world, in turn.
     pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
-        let targets = self.world.scenario().paths().len();
-        let charted = self.chart.draw(model, targets, CHART_TOLERANCE);
-        self.world.snapshots().iter().map(move |snapshot| (snapshot, self.trace(model, charted, snapshot)))
+        let chart = chart_of(self.world, model);
+        self.world.snapshots().iter().map(move |snapshot| {
+            let view = View { model, snapshot, chart: chart.as_ref() };
+            (snapshot, self.trace(view).unwrap_or_else(|| self.trace_finely(view)))
+        })
     }
 
-    fn trace(&mut self, model: &Model, charted: bool, snapshot: &Snapshot) -> Contours {
-        let view = View { model, snapshot, chart: charted.then_some(&self.chart) };
+    /// The pattern at a moment, if the lattice leaves no doubt about it.
+    pub(super) fn trace(&mut self, view: View<'_>) -> Option<Contours> {
         let mut attempt = Attempt { outline_leaks: self.outline_leaks, ..Attempt::default() };
-        if attempt.trace(&mut self.coarse, view) {
-            let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
-            attempt = Attempt { outline_leaks: self.outline_leaks, is_final: true, ..Attempt::default() };
-            attempt.trace(fine, view);
-        }
+        let doubtful = attempt.trace(&mut self.coarse, view);
+        (!doubtful).then(|| attempt.contours())
+    }
+
+    /// The pattern at a moment, as the fine lattice shows it.
+    pub(super) fn trace_finely(&mut self, view: View<'_>) -> Contours {
+        let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
+        let mut attempt = Attempt { outline_leaks: self.outline_leaks, is_final: true, ..Attempt::default() };
+        attempt.trace(fine, view);
         attempt.contours()
     }
+}
+
+/// What models are traced by in a world, unless a chart cannot be accurate enough.
+pub(super) fn chart_of(world: &World, model: &Model) -> Option<Chart> {
+    Chart::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
 }
 
 /// What becomes of a target's component; `Closed` says which component it is.

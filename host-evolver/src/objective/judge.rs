@@ -1,0 +1,159 @@
+//! Judging models: no more than it takes to see who wins.
+
+use super::chart::Chart;
+use super::contour::View;
+use super::fitness::{Evaluation, judge_moment};
+use super::model::Model;
+use super::tracer::{Tracer, chart_of};
+use super::world::{Snapshot, World};
+use crate::tree::Tree;
+
+/// Judges models in one world; one per thread.
+///
+/// Moments at which recent models did badly come first, so that a model that loses does so soon. What a model is worth
+/// does not depend on it: values are summed in the order of time.
+pub struct Judge<'w> {
+    world: &'w World,
+    tracer: Tracer<'w>,
+    /// How badly models have done of late at each moment.
+    hardness: Vec<f64>,
+}
+
+impl<'w> Judge<'w> {
+    /// A judge for `world`.
+    pub fn new(world: &'w World) -> Self {
+        Judge { world, tracer: Tracer::new(world), hardness: vec![0.0; world.snapshots().len()] }
+    }
+
+    /// The world models are judged in.
+    pub fn world(&self) -> &'w World {
+        self.world
+    }
+
+    /// The model that a tree's blob will hold, with sigmoid steepness k; `None` without a pattern.
+    pub fn model_of(&self, tree: &Tree, steepness: f32) -> Option<Model> {
+        let network = tree.network(steepness).ok()?;
+        Model::new(&network, self.world.scenario().morphogen().level).ok()
+    }
+
+    /// Evaluates a model over all snapshots.
+    pub fn judge(&mut self, model: &Model) -> Evaluation {
+        let mut case = Case::new(model, self);
+        while !case.is_closed() {
+            case.look_on(self);
+        }
+        case.at_best
+    }
+
+    /// Evaluates several models until it is sure which are the `kept` best of them that are as good as the rival; `None`
+    /// stands for one without a pattern. Only their values are exact; a model that is worse than they or the rival may
+    /// get any value between theirs and its own.
+    ///
+    /// The model that is best as far as is known is looked at next, so the others get no more attention than it takes
+    /// to see that they are worse.
+    pub fn judge_best(&mut self, models: &[Option<Model>], kept: usize, rival: Option<&Evaluation>) -> Vec<Evaluation> {
+        let mut cases: Vec<Case<'_>> = models.iter().flatten().map(|model| Case::new(model, self)).collect();
+        let mut running: Vec<usize> = (0..cases.len()).collect();
+        let mut found = 0;
+        while found < kept {
+            // Among equals those not closed yet come first: they may turn out worse.
+            let key = |place: &usize| (&cases[running[*place]].at_best, cases[running[*place]].is_closed());
+            let order = |a: &usize, b: &usize| key(a).0.order(key(b).0).then(key(a).1.cmp(&key(b).1));
+            let Some(best) = (0..running.len()).min_by(order) else { break };
+            let case = &mut cases[running[best]];
+            if rival.is_some_and(|rival| !case.at_best.is_as_good_as(rival)) {
+                break;
+            }
+            if case.is_closed() {
+                running.remove(best);
+                found += 1;
+            } else {
+                case.look_on(self);
+            }
+        }
+        let mut cases = cases.into_iter();
+        let mut value = |_: &Model| cases.next().map_or(Evaluation::NO_PATTERN, |case| case.at_best);
+        models.iter().map(|model| model.as_ref().map_or(Evaluation::NO_PATTERN, &mut value)).collect()
+    }
+
+    /// The places of the moments, the hardest first.
+    fn hardest_first(&self) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..self.hardness.len()).collect();
+        places.sort_by(|&a, &b| self.hardness[b].total_cmp(&self.hardness[a]));
+        places
+    }
+
+    fn learn(&mut self, place: usize, moment: Evaluation) {
+        let badness = moment.f2 + VIOLATION_WEIGHT * moment.violation;
+        self.hardness[place] += LEARNING_RATE * (badness - self.hardness[place]);
+    }
+}
+
+/// How much the last model counts for how hard a moment is.
+const LEARNING_RATE: f64 = 0.1;
+/// How much harder a violation makes a moment than as much f2: most rivals are feasible.
+const VIOLATION_WEIGHT: f64 = 10.0;
+
+/// What is known so far of a model.
+struct Case<'m> {
+    model: &'m Model,
+    chart: Option<Option<Chart>>,
+    /// What the model is worth at each moment, as far as it is known.
+    moments: Vec<Option<Evaluation>>,
+    /// Moments to look at, the next one last.
+    ahead: Vec<usize>,
+    /// Moments to look at on the fine lattice after those.
+    doubtful: Vec<usize>,
+    /// What the model is worth if it does as well as it can at the moments not known yet; its value once all are known.
+    at_best: Evaluation,
+}
+
+impl<'m> Case<'m> {
+    /// Looks only whether targets are inside: no chart is needed for a moment at which none is.
+    fn new(model: &'m Model, judge: &Judge<'_>) -> Self {
+        let is_lost = |snapshot: &Snapshot| snapshot.target_inputs.iter().all(|&[x1, x2]| model.error(x1, x2) < 0.0);
+        let lost = |snapshot| is_lost(snapshot).then_some(Evaluation::NO_PATTERN);
+        let moments: Vec<_> = judge.world.snapshots().iter().map(lost).collect();
+        let mut ahead = judge.hardest_first();
+        ahead.retain(|&place| moments[place].is_none());
+        ahead.reverse();
+        let mut case =
+            Case { model, chart: None, moments, ahead, doubtful: Vec::new(), at_best: Evaluation::NO_PATTERN };
+        case.sum_up(judge.world);
+        case
+    }
+
+    fn is_closed(&self) -> bool {
+        self.ahead.is_empty() && self.doubtful.is_empty()
+    }
+
+    /// Looks at one more moment.
+    fn look_on(&mut self, judge: &mut Judge<'_>) {
+        let world = judge.world;
+        let chart = self.chart.get_or_insert_with(|| chart_of(world, self.model)).as_ref();
+        let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], chart };
+        let (place, contours) = if let Some(place) = self.ahead.pop() {
+            let Some(contours) = judge.tracer.trace(view(place)) else { return self.doubtful.push(place) };
+            (place, contours)
+        } else if let Some(place) = self.doubtful.pop() {
+            (place, judge.tracer.trace_finely(view(place)))
+        } else {
+            return;
+        };
+        let moment = judge_moment(world, &world.snapshots()[place], &contours);
+        judge.learn(place, moment);
+        self.moments[place] = Some(moment);
+        self.sum_up(world);
+    }
+
+    /// Sums are rounded, but never fall when a term rises: so no model is worth more than at best.
+    fn sum_up(&mut self, world: &World) {
+        let least = Evaluation { f2: world.terms.least, violation: 0.0 };
+        let mut sum = Evaluation { f2: 0.0, violation: 0.0 };
+        for moment in &self.moments {
+            let moment = moment.unwrap_or(least);
+            sum = Evaluation { f2: sum.f2 + moment.f2, violation: sum.violation + moment.violation };
+        }
+        self.at_best = sum.over(self.moments.len() as f64);
+    }
+}

@@ -15,12 +15,14 @@ pub(super) struct FineLattice {
     runs: Vec<OnceLock<Box<Run>>>,
 }
 
-/// What does not change from moment to moment at eight nodes.
+/// What no model changes at eight nodes.
 #[derive(Debug)]
 struct Run {
     clearance: [f64; WIDTH],
-    x2: Lanes,
     sites: [Site; WIDTH],
+    x2: Lanes,
+    /// At each moment.
+    x1: Vec<OnceLock<Lanes>>,
 }
 
 impl FineLattice {
@@ -42,7 +44,12 @@ impl Computed<'_> {
             let first = node - node % WIDTH;
             let clearance = self.lattice().run(first).map(|point| self.0.clearance_at(point));
             let site = |lane: usize| Site::of(self.lattice(), first + lane, clearance[lane]);
-            Box::new(Run { clearance, x2: self.0.x2_at_all(Lanes(clearance)), sites: std::array::from_fn(site) })
+            Box::new(Run {
+                clearance,
+                sites: std::array::from_fn(site),
+                x2: self.0.x2_at_all(Lanes(clearance)),
+                x1: vec![OnceLock::new(); self.0.snapshots().len()],
+            })
         })
     }
 }
@@ -56,7 +63,9 @@ impl Medium for Computed<'_> {
         &self.0.fine.lattice
     }
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        [self.0.x1_at_all(snapshot, &self.lattice().run(first)), self.run(first).x2]
+        let run = self.run(first);
+        let x1 = || self.0.x1_at_all(snapshot, &self.lattice().run(first));
+        [*run.x1[snapshot.place].get_or_init(x1), run.x2]
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         self.0.inputs_at(snapshot, self.lattice().point(node))

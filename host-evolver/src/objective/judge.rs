@@ -76,13 +76,6 @@ impl<'w> Judge<'w> {
         models.iter().map(|model| model.as_ref().map_or(Evaluation::NO_PATTERN, &mut value)).collect()
     }
 
-    /// The places of the moments, the hardest first.
-    fn hardest_first(&self) -> Vec<usize> {
-        let mut places: Vec<usize> = (0..self.hardness.len()).collect();
-        places.sort_by(|&a, &b| self.hardness[b].total_cmp(&self.hardness[a]));
-        places
-    }
-
     fn learn(&mut self, place: usize, moment: Evaluation) {
         let badness = moment.f2 + VIOLATION_WEIGHT * moment.violation;
         self.hardness[place] += LEARNING_RATE * (badness - self.hardness[place]);
@@ -90,7 +83,7 @@ impl<'w> Judge<'w> {
 }
 
 /// How much the last model counts for how hard a moment is.
-const LEARNING_RATE: f64 = 0.1;
+const LEARNING_RATE: f64 = 0.3;
 /// How much harder a violation makes a moment than as much f2: most rivals are feasible.
 const VIOLATION_WEIGHT: f64 = 10.0;
 
@@ -100,7 +93,7 @@ struct Case<'m> {
     chart: Option<Option<Chart>>,
     /// What the model is worth at each moment, as far as it is known.
     moments: Vec<Option<Evaluation>>,
-    /// Moments to look at, the next one last.
+    /// Moments to look at.
     ahead: Vec<usize>,
     /// Moments to look at on the fine lattice after those.
     doubtful: Vec<usize>,
@@ -114,9 +107,7 @@ impl<'m> Case<'m> {
         let is_lost = |snapshot: &Snapshot| snapshot.target_inputs.iter().all(|&[x1, x2]| model.error(x1, x2) < 0.0);
         let lost = |snapshot| is_lost(snapshot).then_some(Evaluation::NO_PATTERN);
         let moments: Vec<_> = judge.world.snapshots().iter().map(lost).collect();
-        let mut ahead = judge.hardest_first();
-        ahead.retain(|&place| moments[place].is_none());
-        ahead.reverse();
+        let ahead = (0..moments.len()).filter(|&place| moments[place].is_none()).collect();
         let mut case =
             Case { model, chart: None, moments, ahead, doubtful: Vec::new(), at_best: Evaluation::NO_PATTERN };
         case.sum_up(judge.world);
@@ -132,7 +123,10 @@ impl<'m> Case<'m> {
         let world = judge.world;
         let chart = self.chart.get_or_insert_with(|| chart_of(world, self.model)).as_ref();
         let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], chart };
-        let (place, contours) = if let Some(place) = self.ahead.pop() {
+        let hardness = |&ahead: &usize| judge.hardness[self.ahead[ahead]];
+        let hardest = (0..self.ahead.len()).max_by(|a, b| hardness(a).total_cmp(&hardness(b)));
+        let (place, contours) = if let Some(hardest) = hardest {
+            let place = self.ahead.swap_remove(hardest);
             let Some(contours) = judge.tracer.trace(view(place)) else { return self.doubtful.push(place) };
             (place, contours)
         } else if let Some(place) = self.doubtful.pop() {
@@ -155,5 +149,72 @@ impl<'m> Case<'m> {
             sum = Evaluation { f2: sum.f2 + moment.f2, violation: sum.violation + moment.violation };
         }
         self.at_best = sum.over(self.moments.len() as f64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::published::PUBLISHED;
+    use firmware_sim::scenario::Scenario;
+
+    fn world(name: &str) -> World {
+        let path = format!("{}/../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        World::new(Scenario::load(path).unwrap())
+    }
+
+    #[test]
+    fn the_best_get_their_values_and_the_others_no_better_than_theirs() {
+        for name in ["channel", "compound-channel", "channel-two-targets"] {
+            let world = world(name);
+            let mut judge = Judge::new(&world);
+            let mut models = vec![None];
+            for published in &PUBLISHED {
+                for level in [0.4, 0.5, 0.6] {
+                    models.push(Model::new(&published.network().unwrap(), level).ok());
+                }
+            }
+            let value = |model: &Option<Model>| model.as_ref().map(|model| Judge::new(&world).judge(model));
+            let values: Vec<_> = models.iter().map(|model| value(model).unwrap_or(Evaluation::NO_PATTERN)).collect();
+            let mut order: Vec<usize> = (0..values.len()).collect();
+            order.sort_by(|&a, &b| values[a].order(&values[b]));
+            let rival = values[order[2]];
+            for (kept, rival) in [(1, None), (5, None), (values.len(), None), (5, Some(&rival))] {
+                let found = judge.judge_best(&models, kept, rival);
+                let exact = if rival.is_some() { 3 } else { kept };
+                for (rank, &place) in order.iter().enumerate() {
+                    let (found, worst) = (found[place], values[order[exact - 1]]);
+                    if rank < exact {
+                        assert_eq!(found, values[place], "{name}: model {place}");
+                    } else {
+                        assert!(
+                            found.is_as_good_as(&values[place]) && worst.is_as_good_as(&found),
+                            "{name}: {found:?}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_model_is_worth_more_than_at_best() {
+        let world = world("compound-channel");
+        let mut judge = Judge::new(&world);
+        for published in &PUBLISHED {
+            let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
+            let value = judge.judge(&model);
+            let mut case = Case::new(&model, &judge);
+            while !case.is_closed() {
+                let before = case.at_best;
+                case.look_on(&mut judge);
+                assert!(
+                    before.is_as_good_as(&case.at_best) && case.at_best.is_as_good_as(&value),
+                    "{}",
+                    published.name
+                );
+            }
+            assert_eq!(case.at_best, value, "{}", published.name);
+        }
     }
 }

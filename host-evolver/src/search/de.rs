@@ -84,16 +84,16 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
 }
 
 /// Which of the vectors that are evaluated together need their exact fitness.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub enum Wanted<'a, Fit> {
     /// Every one.
     All,
     /// Those that are as good as their own rival, a target each; the others may get any fitness that is strictly worse
     /// than the rival's.
-    Winners(Vec<&'a Fit>),
+    Winners(&'a [Fit]),
     /// The best ones, if they are as good as the rival, the best vector so far; the others may get any fitness that is
-    /// strictly worse than the best's or the rival's. So it is in the last generation, and at the start if there is at
-    /// most one generation, for then nothing else depends on the others' fitness.
+    /// strictly worse than the best's or the rival's. So it is in the last generation, for nothing else depends on the
+    /// others' fitness.
     Best(Option<&'a Fit>),
 }
 
@@ -117,46 +117,57 @@ pub fn minimise_together<Fit: Clone, R: Rng + ?Sized>(
     } else {
         (settings.population().min(settings.evaluations()), settings.evaluations())
     };
-    let mut start: Vec<Vec<f64>> = initial.iter().take(size).cloned().collect();
-    start.resize_with(size, || bounds.sample(rng));
-    let starts_the_last_generation = budget - size <= size;
-    let fitness = evaluate(&start, if starts_the_last_generation { Wanted::Best(None) } else { Wanted::All });
-    let mut population: Vec<(Vec<f64>, Fit)> = start.into_iter().zip(fitness).collect();
-
+    let mut population: Vec<Vec<f64>> = initial.iter().take(size).cloned().collect();
+    population.resize_with(size, || bounds.sample(rng));
     let mut left = budget - size;
-    while left > 0 {
-        let trials = (0..size.min(left)).map(|target| trial(settings, bounds, &population, target, rng));
-        let trials: Vec<Vec<f64>> = trials.collect();
-        left -= trials.len();
-        let wanted = if left == 0 {
-            Wanted::Best(Some(&population[best_of(&population, strictly)].1))
-        } else {
-            Wanted::Winners(population.iter().map(|(_, fitness)| fitness).collect())
-        };
-        let fitness = evaluate(&trials, wanted);
-        for (place, (trial, fitness)) in population.iter_mut().zip(trials.into_iter().zip(fitness)) {
-            if better_or_equal(&fitness, &place.1) {
-                *place = (trial, fitness);
+    let mut trials = |population: &[Vec<f64>], left: &mut usize| -> Vec<Vec<f64>> {
+        let trials = (0..size.min(*left)).map(|target| trial(settings, bounds, population, target, rng));
+        let trials: Vec<_> = trials.collect();
+        *left -= trials.len();
+        trials
+    };
+    // Trials are made from the vectors, not from their fitness: those of the only generation can be evaluated with them.
+    let mut challengers = if left <= size { trials(&population, &mut left) } else { Vec::new() };
+    let mut fitness = if left == 0 {
+        let together: Vec<_> = population.iter().chain(&challengers).cloned().collect();
+        evaluate(&together, Wanted::Best(None))
+    } else {
+        evaluate(&population, Wanted::All)
+    };
+    let mut results = fitness.split_off(size);
+    loop {
+        let found = challengers.into_iter().zip(results);
+        for ((x, fitness), (trial, result)) in population.iter_mut().zip(&mut fitness).zip(found) {
+            if better_or_equal(&result, fitness) {
+                (*x, *fitness) = (trial, result);
             }
         }
+        if left == 0 {
+            break;
+        }
+        challengers = trials(&population, &mut left);
+        let wanted = if left == 0 {
+            Wanted::Best(Some(&fitness[best_of(&fitness, strictly)]))
+        } else {
+            Wanted::Winners(&fitness)
+        };
+        results = evaluate(&challengers, wanted);
     }
 
-    let best = best_of(&population, strictly);
-    let (best, fitness) = population.swap_remove(best);
-    Ok(Outcome { best, fitness, evaluations: budget })
+    let best = best_of(&fitness, strictly);
+    Ok(Outcome { best: population.swap_remove(best), fitness: fitness.swap_remove(best), evaluations: budget })
 }
 
 /// The place of the best; the first among equals.
-fn best_of<Fit>(population: &[(Vec<f64>, Fit)], strictly_better: impl Fn(&Fit, &Fit) -> bool) -> usize {
-    (1..population.len())
-        .fold(0, |best, i| if strictly_better(&population[i].1, &population[best].1) { i } else { best })
+fn best_of<Fit>(fitness: &[Fit], strictly_better: impl Fn(&Fit, &Fit) -> bool) -> usize {
+    (1..fitness.len()).fold(0, |best, i| if strictly_better(&fitness[i], &fitness[best]) { i } else { best })
 }
 
 /// The vector that challenges member `target`. The population is full: at least four members.
-fn trial<Fit, R: Rng + ?Sized>(
+fn trial<R: Rng + ?Sized>(
     settings: &Settings,
     bounds: &Bounds,
-    population: &[(Vec<f64>, Fit)],
+    population: &[Vec<f64>],
     target: usize,
     rng: &mut R,
 ) -> Vec<f64> {
@@ -166,7 +177,7 @@ fn trial<Fit, R: Rng + ?Sized>(
             others[k] = rng.random_range(0..population.len());
         }
     }
-    let [x, base, plus, minus] = others.map(|i| &population[i].0);
+    let [x, base, plus, minus] = others.map(|i| &population[i]);
     let always = rng.random_range(0..x.len());
     let mut trial = x.clone();
     for (j, &(lo, hi)) in bounds.intervals().iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::contour::View;
-use super::fitness::{Evaluation, judge_moment};
+use super::fitness::{Evaluation, WORST_F2, judge_moment};
 use super::model::Model;
 use super::tracer::{Tracer, chart_of};
 use super::world::{Snapshot, World};
@@ -87,6 +87,9 @@ const LEARNING_RATE: f64 = 0.3;
 /// How much harder a violation makes a moment than as much f2: most rivals are feasible.
 const VIOLATION_WEIGHT: f64 = 10.0;
 
+/// How hard a moment is at which at least every other model is lost.
+const LOST_AS_A_RULE: f64 = (WORST_F2 + VIOLATION_WEIGHT) / 2.0;
+
 /// What is known so far of a model.
 struct Case<'m> {
     model: &'m Model,
@@ -127,7 +130,9 @@ impl<'m> Case<'m> {
         let hardest = (0..self.ahead.len()).max_by(|a, b| hardness(a).total_cmp(&hardness(b)));
         let (place, contours) = if let Some(hardest) = hardest {
             let place = self.ahead.swap_remove(hardest);
-            let Some(contours) = judge.tracer.trace(view(place)) else { return self.doubtful.push(place) };
+            let Some(contours) = judge.tracer.trace(view(place), judge.hardness[place] > LOST_AS_A_RULE) else {
+                return self.doubtful.push(place);
+            };
             (place, contours)
         } else if let Some(place) = self.doubtful.pop() {
             (place, judge.tracer.trace_finely(view(place)))

@@ -64,7 +64,9 @@ impl Lattice {
     }
 
     pub(super) fn point(&self, node: NodeIndex) -> Point<f64> {
-        let offset = Vector::new((node % self.columns) as f64, (node / self.columns) as f64);
+        // Processors divide short numbers faster.
+        let (node, columns) = (node as u32, self.columns as u32);
+        let offset = Vector::new(f64::from(node % columns), f64::from(node / columns));
         self.origin + offset * self.step
     }
 

@@ -1,4 +1,6 @@
 //! The ten network motifs: how the inputs of a gene regulate its expression.
+//!
+//! All that there is to a motif is here: another one is a variant with the next free opcode, and an arm in each function.
 
 use crate::scalar::Arithmetic;
 
@@ -104,6 +106,31 @@ impl Motif {
             Motif::Xnor => A::ONE - sig(a * (A::ONE - b)) - sig((A::ONE - a) * b),
         }
     }
+
+    /// The same function as text, in the paper's notation; `a`, `b`, … are the operands.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Motif::Pos => "sig(a, θ)",
+            Motif::Neg => "1 - sig(a, θ)",
+            Motif::And => "sig(a*b, θ)",
+            Motif::Nand => "1 - sig(a*b, θ)",
+            Motif::Or => "sig(a + b + …, θ)",
+            Motif::Nor => "1 - sig(a + b + …, θ)",
+            Motif::Andn => "sig(a*(1 - b), θ)",
+            Motif::Orn => "sig(a + (1 - b), θ)",
+            Motif::Xor => "sig(a*(1 - b), θ) + sig((1 - a)*b, θ)",
+            Motif::Xnor => "1 - sig(a*(1 - b), θ) - sig((1 - a)*b, θ)",
+        }
+    }
+
+    /// Whether it rises with its operand; for XOR and XNOR, which do both, while the other operand is low.
+    pub const fn rises_with(self, operand: usize) -> bool {
+        match self {
+            Motif::Pos | Motif::And | Motif::Or | Motif::Xor => true,
+            Motif::Neg | Motif::Nand | Motif::Nor | Motif::Xnor => false,
+            Motif::Andn | Motif::Orn => operand == 0,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -130,6 +157,19 @@ mod tests {
             let inputs = &[a, b, c][..(*motif.arity().end()).min(3)];
             let got = motif.regulation(inputs.iter().copied(), theta, k);
             assert!((got - value).abs() < 1e-12, "{}: {got} against {value}", motif.name());
+        }
+    }
+
+    #[test]
+    fn motifs_rise_and_fall_as_they_say() {
+        for motif in Motif::ALL {
+            for operand in 0..*motif.arity().end() {
+                let with = |level: f64| {
+                    let inputs = (0..*motif.arity().end()).map(|place| if place == operand { level } else { 0.1 });
+                    motif.regulation(inputs, 0.35, 2.0)
+                };
+                assert_eq!(with(0.8) > with(0.2), motif.rises_with(operand), "{} {operand}", motif.name());
+            }
         }
     }
 

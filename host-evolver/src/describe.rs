@@ -1,7 +1,6 @@
 //! A network in words: names, equations, an indented tree, and the data of its figures.
 
 use crate::report;
-use grn_core::motif::Motif;
 use grn_core::network::{Gene, Network, Source};
 
 /// The name of a gene: y1, y2, … and M for the last.
@@ -21,7 +20,7 @@ fn source_name(network: &Network<f32>, source: Source) -> String {
 pub fn equations(network: &Network<f32>) -> Vec<String> {
     let equation = |(index, gene): (usize, &Gene<f32>)| {
         let name = gene_name(network, index);
-        format!("d{name}/dt = -{name} {}", regulation(network, gene))
+        format!("d{name}/dt = -{name} + {}", regulation(network, gene))
     };
     network.genes().iter().enumerate().map(equation).collect()
 }
@@ -30,19 +29,8 @@ fn regulation(network: &Network<f32>, gene: &Gene<f32>) -> String {
     let names: Vec<String> = gene.inputs.iter().map(|&source| source_name(network, source)).collect();
     let a = names.first().map_or("", String::as_str);
     let b = names.get(1).map_or("", String::as_str);
-    let sig = |argument: String| format!("sig({argument}, {})", gene.theta);
-    match gene.motif {
-        Motif::Pos => format!("+ {}", sig(a.into())),
-        Motif::Neg => format!("+ 1 - {}", sig(a.into())),
-        Motif::And => format!("+ {}", sig(format!("{a}*{b}"))),
-        Motif::Nand => format!("+ 1 - {}", sig(format!("{a}*{b}"))),
-        Motif::Or => format!("+ {}", sig(names.join(" + "))),
-        Motif::Nor => format!("+ 1 - {}", sig(names.join(" + "))),
-        Motif::Andn => format!("+ {}", sig(format!("{a}*(1 - {b})"))),
-        Motif::Orn => format!("+ {}", sig(format!("{a} + (1 - {b})"))),
-        Motif::Xor => format!("+ {} + {}", sig(format!("{a}*(1 - {b})")), sig(format!("(1 - {a})*{b}"))),
-        Motif::Xnor => format!("+ 1 - {} - {}", sig(format!("{a}*(1 - {b})")), sig(format!("(1 - {a})*{b}"))),
-    }
+    let formula = gene.motif.formula().replace("a + b + …", &names.join(" + "));
+    formula.replace('a', a).replace('b', b).replace('θ', &gene.theta.to_string())
 }
 
 /// The network unfolded into a syntax tree from M down; a gene read twice appears twice.
@@ -134,20 +122,11 @@ pub fn graph(network: &Network<f32>) -> Vec<report::Gene> {
                     Source::X2 => report::Source::X2,
                     Source::Gene(earlier) => report::Source::Gene(usize::from(earlier)),
                 },
-                activates: activates(gene.motif, operand),
+                activates: gene.motif.rises_with(operand),
             })
             .collect(),
     };
     network.genes().iter().enumerate().map(gene).collect()
-}
-
-/// Whether a motif rises with its operand; for XOR and XNOR, which do both, while the other operand is low.
-fn activates(motif: Motif, operand: usize) -> bool {
-    match motif {
-        Motif::Pos | Motif::And | Motif::Or | Motif::Xor => true,
-        Motif::Neg | Motif::Nand | Motif::Nor | Motif::Xnor => false,
-        Motif::Andn | Motif::Orn => operand == 0,
-    }
 }
 
 #[cfg(test)]

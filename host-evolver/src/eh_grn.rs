@@ -87,8 +87,8 @@ pub struct Progress {
 /// Searches θ with a budget of `evaluations`. CMA-ES starts at a random mean, and again at another whenever it has
 /// nothing left to learn. Returns `None` if it was stopped.
 ///
-/// It learns from the better half of a generation only, like the version that the paper cites, so an evaluation ends
-/// when it is sure to be in the worse half.
+/// It learns from the better half of a generation only, like the version that the paper cites, so the others are
+/// evaluated no further than it takes to see that they are worse.
 pub fn search(
     structure: Structure,
     world: &World,
@@ -130,21 +130,12 @@ pub fn search(
     best.map(|best| (best, history))
 }
 
-/// The evaluation of each vector; those in the worse half may be stopped early.
+/// The evaluation of each vector; only those of the better half are exact.
 fn judge_all(structure: Structure, judge: &mut Judge<'_>, population: &[Vec<f64>]) -> Vec<Evaluation> {
-    let mut found: Vec<Evaluation> = Vec::with_capacity(population.len());
-    let mut better_half: Vec<Evaluation> = Vec::with_capacity(POPULATION / 2 + 1);
-    for thetas in population {
-        let rival = better_half.get(POPULATION / 2 - 1);
-        let level = judge.world().scenario().morphogen().level;
-        let model = structure.network(thetas).and_then(|network| Model::new(&network, level).ok());
-        let evaluation = model.map_or(Evaluation::NO_PATTERN, |model| judge.judge_against(&model, rival));
-        let place = better_half.partition_point(|better| better.is_as_good_as(&evaluation));
-        better_half.insert(place, evaluation);
-        better_half.truncate(POPULATION / 2);
-        found.push(evaluation);
-    }
-    found
+    let level = judge.world().scenario().morphogen().level;
+    let model = |thetas: &Vec<f64>| structure.network(thetas).and_then(|network| Model::new(&network, level).ok());
+    let models: Vec<Option<Model>> = population.iter().map(model).collect();
+    judge.judge_best(&models, POPULATION / 2, None)
 }
 
 fn progress(structure: Structure, evaluations: usize, best: &Tuned) -> Progress {

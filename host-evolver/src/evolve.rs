@@ -9,12 +9,13 @@ mod tests;
 
 pub use settings::{DeSettings, Settings, SettingsError};
 
-use crate::objective::{Evaluation, Judge, World};
+use crate::objective::{Evaluation, Judge, Model, World};
 use crate::objectives::{Nodes, Objective, RingError};
 use crate::search::bounds::Bounds;
+use crate::search::de::{self, Wanted};
 use crate::search::hypervolume::hypervolume;
+use crate::search::knee;
 use crate::search::nsga2::{self, Scores, Standing};
-use crate::search::{de, knee};
 use crate::tree::Tree;
 use crate::variation::{Grammar, Variation};
 use grn_core::network::THETA_RANGE;
@@ -25,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A tree whose structure its generation already has is drawn again at most so often.
 const REDRAWS: usize = 20;
@@ -121,6 +123,8 @@ pub struct Search<'w, const M: usize = 2> {
     variation: Box<dyn Variation + 'w>,
     de: de::Settings,
     state: State,
+    /// Idle ones, kept for their working memory and for what they know of the world's hard moments.
+    judges: Mutex<Vec<Judge<'w>>>,
 }
 
 impl<'w> Search<'w> {
@@ -150,7 +154,12 @@ impl<'w, const M: usize> Search<'w, M> {
         settings.check()?;
         let de = settings.differential_evolution()?;
         let fresh = State { generation: 0, evaluations: 0, population: Vec::new(), history: Vec::new() };
-        Ok(Search { world, settings, objectives, variation, de, state: state.unwrap_or(fresh) })
+        let (state, judges) = (state.unwrap_or(fresh), Mutex::new(Vec::new()));
+        Ok(Search { world, settings, objectives, variation, de, state, judges })
+    }
+
+    fn judges(&self) -> MutexGuard<'_, Vec<Judge<'w>>> {
+        self.judges.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The state after the last whole generation.
@@ -171,16 +180,17 @@ impl<'w, const M: usize> Search<'w, M> {
         if brood.is_empty() {
             return Advance::Finished;
         }
-        let tune = |judge: &mut Judge<'w>, (tree, mut rng): (Tree, ChaCha8Rng)| {
+        let tune = |(tree, mut rng): (Tree, ChaCha8Rng)| {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let individual = self.tune(judge, &tree, &mut rng);
+            let mut judge = self.judges().pop().unwrap_or_else(|| Judge::new(self.world));
+            let individual = self.tune(&mut judge, &tree, &mut rng);
+            self.judges().push(judge);
             tuned(&individual);
             Some(individual)
         };
-        let offspring: Option<Vec<Individual>> =
-            brood.into_par_iter().with_max_len(1).map_init(|| Judge::new(self.world), tune).collect();
+        let offspring: Option<Vec<Individual>> = brood.into_par_iter().with_max_len(1).map(tune).collect();
         let Some(offspring) = offspring else { return Advance::Interrupted };
         self.state.evaluations += offspring.len() * self.settings.evaluations_each();
         self.state.generation += 1;
@@ -236,11 +246,20 @@ impl<'w, const M: usize> Search<'w, M> {
     fn tune(&self, judge: &mut Judge<'w>, tree: &Tree, rng: &mut ChaCha8Rng) -> Individual {
         let inherited = tree.thetas();
         let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
-        let evaluate = |thetas: &[f64], rival: Option<&Evaluation>| {
-            judge.judge_tree(&tree.with_thetas(thetas), self.settings.steepness, rival)
+        let evaluate = |vectors: &[Vec<f64>], wanted: Wanted<'_, Evaluation>| {
+            let model = |thetas: &Vec<f64>| judge.model_of(&tree.with_thetas(thetas), self.settings.steepness);
+            let models: Vec<Option<Model>> = vectors.iter().map(model).collect();
+            match wanted {
+                Wanted::All => judge.judge_best(&models, models.len(), None),
+                Wanted::Best(rival) => judge.judge_best(&models, 1, rival),
+                Wanted::Winners(rivals) => {
+                    let one = |(model, rival)| judge.judge_best(std::slice::from_ref(model), 1, Some(rival))[0];
+                    models.iter().zip(rivals).map(one).collect()
+                }
+            }
         };
         let tuned = Bounds::cube(inherited.len(), low, high).ok().and_then(|bounds| {
-            de::minimise(&self.de, &bounds, &[inherited], rng, evaluate, Evaluation::is_as_good_as).ok()
+            de::minimise_together(&self.de, &bounds, &[inherited], rng, evaluate, Evaluation::is_as_good_as).ok()
         });
         match tuned {
             Some(best) => Individual::new(tree.with_thetas(&best.best), best.fitness),

@@ -7,7 +7,7 @@ use crate::deploy;
 use crate::describe;
 use crate::evolve::{FrontMember, Milestone, Search, Settings, State};
 use crate::figures;
-use crate::files::{self, FileError, blob_bytes};
+use crate::files::{self, FileError};
 use crate::objective::{Model, World};
 use crate::report;
 use firmware_sim::scenario::Scenario;
@@ -153,8 +153,7 @@ impl RunFolder {
         for (place, member) in front.iter().enumerate() {
             let blob = blob_of(member)?;
             let name = format!("front/{place:02}-{}-nodes.grn", member.individual.tree.size());
-            let path = self.path(&name);
-            files::write(&path, blob_bytes(&blob).map_err(|error| FileError::new(&path, error))?)?;
+            files::write_blob(&self.path(&name), &blob)?;
             if member.knee.utility || knee.is_none() {
                 knee = Some(blob);
             }
@@ -163,8 +162,7 @@ impl RunFolder {
         files::write(&self.path("front.csv"), front_csv(&rows))?;
         files::write(&self.path("history.csv"), history_csv(search.state()))?;
         let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
-        let path = self.path("knee.grn");
-        files::write(&path, blob_bytes(&knee).map_err(|error| FileError::new(&path, error))?)?;
+        files::write_blob(&self.path("knee.grn"), &knee)?;
         self.draw("pareto.svg", figures::pareto(&front, &search.state().population, &world.scenario().ring()))?;
         self.draw("tree.svg", report::tree(&describe::syntax_tree(&knee.network)))?;
         self.draw("grn.svg", report::grn(&describe::graph(&knee.network)))?;

@@ -143,7 +143,7 @@ const READINGS: &str = "\
 | Feasible | every target enclosed at every snapshot, every candidate point at least 0.05 m from walls | \"can not collide\" |
 | Motifs with one or more than two inputs | two rows: all ten, and the eight binary ones | the paper's fronts have 3, 5, 7, … nodes, which only binary motifs give |
 | DE generations an individual gets | one | see the table of generations |
-| CMA-ES | the tutorial's defaults without negative weights, as in the version of 2001 that the paper cites; mean at random in [0, 2], σ = 0.6, samples folded into the box; started again when it has converged | the paper says population 40 and [0, 2] only |
+| CMA-ES | the tutorial's defaults with the damping of pycma 4.5.0, without negative weights, as in the version of 2001 that the paper cites; mean at random in [0, 2], σ = 0.6, samples folded into the box; started again when it has converged | the paper says population 40 and [0, 2] only |
 | Size of EH-GRN | 19 nodes: its genes and the inputs they read, counted like a tree | so that both methods are counted alike |
 | The model that is transferred | the knee by marginal utility; EH-GRN's best | what would be deployed |
 | Hypervolume | of feasible models, reference 32 nodes and f2 = 0.2, as a share of that box | stated so that others can compare |

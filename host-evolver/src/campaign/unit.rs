@@ -4,7 +4,7 @@ use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
 use crate::deploy::{self, DEFAULT_SCALE};
 use crate::evolve::Knee;
-use crate::files::{self, FileError, blob_bytes};
+use crate::files::{self, FileError};
 use crate::objective::World;
 use crate::run::FRONT_HEADER;
 use serde::{Deserialize, Serialize};
@@ -126,12 +126,11 @@ impl Unit {
         let mut rows = Vec::new();
         for (place, solution) in outcome.front.iter().enumerate() {
             let blob = deploy::blob(solution.network.clone(), &morphogen, DEFAULT_SCALE);
-            let bytes = blob_bytes(&blob).map_err(|error| FileError::new(folder, error))?;
             let name = format!("{place:02}-{}-nodes.grn", solution.nodes);
             if place == chosen {
-                files::write(&folder.join("knee.grn"), &bytes)?;
+                files::write_blob(&folder.join("knee.grn"), &blob)?;
             }
-            files::write(&folder.join(&name), bytes)?;
+            files::write_blob(&folder.join(&name), &blob)?;
             rows.push([
                 solution.nodes.to_string(),
                 solution.f2.to_string(),

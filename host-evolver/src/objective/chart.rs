@@ -13,7 +13,7 @@ const FINENESS: [usize; 2] = [1, 2];
 const MARGIN: f64 = 1.5;
 
 /// φ at a grid of (x1, x2), between which it is interpolated linearly.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Chart {
     /// Divisions of the unit interval of x1 and x2.
     divisions: [f64; 2],
@@ -23,30 +23,29 @@ pub(super) struct Chart {
 }
 
 impl Chart {
-    /// Fills the chart for a model and for x1 up to `targets`, so finely that it is off by less than `tolerance`.
-    /// Returns whether that was possible.
-    pub(super) fn draw(&mut self, model: &Model, targets: usize, tolerance: f64) -> bool {
-        FINENESS.into_iter().any(|fineness| {
-            self.draw_at(fineness, model, targets);
-            self.accuracy < tolerance
-        })
+    /// The chart of a model for x1 up to `targets`, so fine that it is off by less than `tolerance`, if that is possible.
+    pub(super) fn of(model: &Model, targets: usize, tolerance: f64) -> Option<Chart> {
+        let mut charts = FINENESS.into_iter().map(|fineness| Chart::drawn(fineness, model, targets));
+        charts.find(|chart| chart.accuracy < tolerance)
     }
 
-    fn draw_at(&mut self, fineness: usize, model: &Model, targets: usize) {
+    fn drawn(fineness: usize, model: &Model, targets: usize) -> Chart {
         let (x1_divisions, x2_divisions) = (X1_DIVISIONS * fineness, X2_DIVISIONS * fineness);
-        self.divisions = [x1_divisions as f64, x2_divisions as f64];
-        let [per_x1, per_x2] = self.divisions.map(|divisions| 1.0 / divisions);
-        // One column more than needed, so that the last cell has a far side.
-        self.columns = (targets * x1_divisions + 2).next_multiple_of(WIDTH);
-        self.errors.clear();
-        for row in 0..x2_divisions + 2 {
+        let divisions = [x1_divisions as f64, x2_divisions as f64];
+        let [per_x1, per_x2] = divisions.map(|divisions| 1.0 / divisions);
+        // One column and one row more than needed, so that the last cell has a far side.
+        let (columns, rows) = ((targets * x1_divisions + 2).next_multiple_of(WIDTH), x2_divisions + 2);
+        let mut errors = Vec::with_capacity(columns * rows);
+        for row in 0..rows {
             let x2 = Lanes::splat(row as f64 * per_x2);
-            for first in (0..self.columns).step_by(WIDTH) {
+            for first in (0..columns).step_by(WIDTH) {
                 let x1 = Lanes(std::array::from_fn(|lane| (first + lane) as f64 * per_x1));
-                self.errors.extend(model.errors(x1, x2).0);
+                errors.extend(model.errors(x1, x2).0);
             }
         }
-        self.accuracy = self.largest_second_difference() / 8.0;
+        let mut chart = Chart { divisions, columns, errors, accuracy: 0.0 };
+        chart.accuracy = chart.largest_second_difference() / 8.0;
+        chart
     }
 
     fn largest_second_difference(&self) -> f64 {
@@ -90,8 +89,7 @@ mod tests {
     fn the_chart_keeps_its_promised_accuracy() {
         for published in &PUBLISHED {
             let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
-            let mut chart = Chart::default();
-            assert!(chart.draw(&model, 2, 0.005), "{}", published.name);
+            let chart = Chart::of(&model, 2, 0.005).unwrap_or_else(|| panic!("{}", published.name));
             for i in 0..=200 {
                 for j in 0..=100 {
                     let (x1, x2) = (f64::from(i) * 0.01, f64::from(j) * 0.01);

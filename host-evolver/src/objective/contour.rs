@@ -8,6 +8,8 @@ use super::ring::thinned;
 use super::sharpen::sharpened;
 use super::world::Snapshot;
 use grn_core::geometry::Point;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A ring's points are at least this far apart, in lattice steps.
 const CLOSEST_POINTS: f64 = 0.25;
@@ -49,6 +51,8 @@ pub(super) struct Follower<M> {
     /// Directions in which the contour has been followed across the edge to that neighbour, as bits.
     followed: Vec<u8>,
     flood: Vec<NodeIndex>,
+    /// What [`Follower::finds_leak`] looks at next, with the distance to the walls.
+    frontier: BinaryHeap<Reverse<(i32, NodeIndex)>>,
     crossings: Vec<Crossing>,
     edges: Vec<Edge>,
 }
@@ -66,6 +70,7 @@ impl<M: Medium> Follower<M> {
             components_before: 0,
             followed: vec![0; nodes],
             flood: Vec::new(),
+            frontier: BinaryHeap::new(),
             crossings: Vec::new(),
             edges: Vec::new(),
         }
@@ -139,10 +144,31 @@ impl<M: Medium> Follower<M> {
         self.error(node, view) >= 0.0
     }
 
-    /// Whether the component of `start` at the given threshold is closed; stops at the first leak.
-    pub(super) fn probe(&mut self, start: NodeIndex, threshold: f64, view: View<'_>) -> Component {
-        self.flood_from(start);
-        self.flood_at(threshold, view)
+    /// Whether a leak of the component of `start` at the given threshold is among the first `most` nodes when those
+    /// nearest to walls are looked at first. It labels what it sees.
+    pub(super) fn finds_leak(&mut self, start: NodeIndex, threshold: f64, most: usize, view: View<'_>) -> bool {
+        self.component += 1;
+        self.frontier.clear();
+        self.approach(start);
+        for _ in 0..most {
+            let Some(Reverse((_, node))) = self.frontier.pop() else { return false };
+            if self.medium.site(node) == Site::Leak {
+                return true;
+            }
+            for direction in Direction::ALL {
+                let neighbour = self.medium.lattice().neighbour(node, direction);
+                if self.components[neighbour] != self.component && self.error(neighbour, view) >= threshold {
+                    self.approach(neighbour);
+                }
+            }
+        }
+        false
+    }
+
+    fn approach(&mut self, node: NodeIndex) {
+        self.components[node] = self.component;
+        let millimetres = (self.medium.clearance(node) * 1e3) as i32;
+        self.frontier.push(Reverse((millimetres, node)));
     }
 
     /// Lets the closed component labelled last grow down to the given threshold; stops at the first leak.

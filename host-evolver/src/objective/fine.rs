@@ -3,30 +3,56 @@
 use super::lanes::{Lanes, WIDTH};
 use super::lattice::{Edge, Lattice, Medium, NodeIndex, Site};
 use super::world::{LATTICE_STEP, Snapshot, World, is_crease};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::OnceLock;
 
 /// Spacing of the fine lattice, metres.
 const FINE_STEP: f64 = LATTICE_STEP / 4.0;
 
-/// The fine lattice and those distances to the walls that were asked for so far, by whichever thread.
+/// The fine lattice and what was asked for so far, by whichever thread: every thread would find the same.
 #[derive(Debug)]
 pub(super) struct FineLattice {
     lattice: Lattice,
-    /// The bits of the clearance at each node; 0 where it is not known yet.
-    clearance: Vec<AtomicU64>,
+    runs: Vec<OnceLock<Box<Run>>>,
+}
+
+/// What no model changes at eight nodes.
+#[derive(Debug)]
+struct Run {
+    clearance: [f64; WIDTH],
+    sites: [Site; WIDTH],
+    x2: Lanes,
+    /// At each moment.
+    x1: Vec<OnceLock<Lanes>>,
 }
 
 impl FineLattice {
     pub(super) fn over(region: [f64; 2]) -> FineLattice {
         let lattice = Lattice::over(region, FINE_STEP);
-        let clearance = lattice.nodes().map(|_| AtomicU64::new(0)).collect();
-        FineLattice { lattice, clearance }
+        let runs = lattice.nodes().step_by(WIDTH).map(|_| OnceLock::new()).collect();
+        FineLattice { lattice, runs }
     }
 }
 
 /// The fine lattice as a medium: inputs are computed when asked for.
 #[derive(Clone, Copy)]
 pub(super) struct Computed<'w>(pub &'w World);
+
+impl Computed<'_> {
+    /// The run that holds a node.
+    fn run(&self, node: NodeIndex) -> &Run {
+        self.0.fine.runs[node / WIDTH].get_or_init(|| {
+            let first = node - node % WIDTH;
+            let clearance = self.lattice().run(first).map(|point| self.0.clearance_at(point));
+            let site = |lane: usize| Site::of(self.lattice(), first + lane, clearance[lane]);
+            Box::new(Run {
+                clearance,
+                sites: std::array::from_fn(site),
+                x2: self.0.x2_at_all(Lanes(clearance)),
+                x1: vec![OnceLock::new(); self.0.snapshots().len()],
+            })
+        })
+    }
+}
 
 impl Medium for Computed<'_> {
     const KEEPS_INPUTS: bool = false;
@@ -37,27 +63,18 @@ impl Medium for Computed<'_> {
         &self.0.fine.lattice
     }
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        let points: [_; WIDTH] = std::array::from_fn(|lane| self.lattice().point(first + lane));
-        let clearance = std::array::from_fn(|lane| self.clearance(first + lane));
-        [self.0.x1_at_all(snapshot, &points), self.0.x2_at_all(Lanes(clearance))]
+        let run = self.run(first);
+        let x1 = || self.0.x1_at_all(snapshot, &self.lattice().run(first));
+        [*run.x1[snapshot.place].get_or_init(x1), run.x2]
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         self.0.inputs_at(snapshot, self.lattice().point(node))
     }
     fn clearance(&self, node: NodeIndex) -> f64 {
-        let known = &self.0.fine.clearance[node];
-        // Every thread would find the same bits, so it does not matter who stores them first.
-        match known.load(Ordering::Relaxed) {
-            0 => {
-                let clearance = self.0.clearance_at(self.lattice().point(node));
-                known.store(clearance.to_bits(), Ordering::Relaxed);
-                clearance
-            }
-            bits => f64::from_bits(bits),
-        }
+        self.run(node).clearance[node % WIDTH]
     }
     fn site(&self, node: NodeIndex) -> Site {
-        Site::of(self.lattice(), node, self.clearance(node))
+        self.run(node).sites[node % WIDTH]
     }
     fn is_creased(&self, edge: Edge) -> bool {
         let middle = self.0.clearance_at(self.along(edge, 0.5));

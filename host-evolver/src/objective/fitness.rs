@@ -1,15 +1,14 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
 use super::lanes::{Lanes, WIDTH};
-use super::model::Model;
 use super::profile::{Profile, Sigmoid};
 use super::ring::candidates;
-use super::tracer::{Contours, Tracer};
+use super::tracer::Contours;
 use super::world::{Snapshot, World};
 use crate::search::nsga2::Scores;
-use crate::tree::Tree;
 use firmware_sim::scenario::Ring;
 use grn_core::geometry::Point;
+use std::cmp::Ordering;
 
 /// Candidate points per ring that f2 averages over.
 pub const CANDIDATES_PER_RING: usize = 48;
@@ -34,7 +33,7 @@ impl Evaluation {
     /// The value of something that makes no pattern at all.
     pub const NO_PATTERN: Evaluation = Evaluation { f2: WORST_F2, violation: NO_PATTERN_VIOLATION };
 
-    fn over(self, count: f64) -> Evaluation {
+    pub(super) fn over(self, count: f64) -> Evaluation {
         Evaluation { f2: self.f2 / count, violation: self.violation / count }
     }
 
@@ -42,6 +41,11 @@ impl Evaluation {
     pub fn is_as_good_as(&self, other: &Evaluation) -> bool {
         let scores = |e: &Evaluation| Scores { objectives: [e.f2], violation: e.violation };
         !scores(other).dominates(&scores(self))
+    }
+
+    /// From the best to the worst, by the same rule.
+    pub fn order(&self, other: &Evaluation) -> Ordering {
+        self.violation.total_cmp(&other.violation).then(self.f2.total_cmp(&other.f2))
     }
 
     /// Whether every target is enclosed everywhere and every candidate point is clear.
@@ -57,7 +61,7 @@ const ROUNDING: f64 = 1e-6;
 #[derive(Clone, Debug)]
 pub(super) struct Terms {
     /// No snapshot's f2 is below: the terms of a point midway between d_min and d_max from every target, 2 sig(-(d_max - d_min) / 2, 0, k).
-    least: f64,
+    pub(super) least: f64,
     /// sig(d, d_max, k1) + sig(d_min, d, k2).
     target: Profile,
     /// sig(d_obstacle, d, k3).
@@ -76,57 +80,8 @@ impl Terms {
     }
 }
 
-/// Judges models in one world; one per thread.
-pub struct Judge<'w> {
-    world: &'w World,
-    tracer: Tracer<'w>,
-}
-
-impl<'w> Judge<'w> {
-    /// A judge for `world`.
-    pub fn new(world: &'w World) -> Self {
-        Judge { world, tracer: Tracer::new(world) }
-    }
-
-    /// The world models are judged in.
-    pub fn world(&self) -> &'w World {
-        self.world
-    }
-
-    /// Evaluates a tree with sigmoid steepness k: the model that its blob will hold. If the tree is worse than its rival
-    /// the evaluation stops as soon as that is sure, with a value between the rival's and its own.
-    pub fn judge_tree(&mut self, tree: &Tree, steepness: f32, rival: Option<&Evaluation>) -> Evaluation {
-        let level = self.world.scenario().morphogen().level;
-        match tree.network(steepness).ok().and_then(|network| Model::new(&network, level).ok()) {
-            Some(model) => self.judge_against(&model, rival),
-            None => Evaluation::NO_PATTERN,
-        }
-    }
-
-    /// Evaluates a model over all snapshots.
-    pub fn judge(&mut self, model: &Model) -> Evaluation {
-        self.judge_against(model, None)
-    }
-
-    /// The same; if the model is worse than its rival the evaluation stops as soon as that is sure, with a value between
-    /// the rival's and its own.
-    pub fn judge_against(&mut self, model: &Model, rival: Option<&Evaluation>) -> Evaluation {
-        let count = self.world.snapshots().len() as f64;
-        let (mut sum, mut left) = (Evaluation { f2: 0.0, violation: 0.0 }, count);
-        for (snapshot, contours) in self.tracer.trace_all(model) {
-            let moment = judge_moment(self.world, snapshot, &contours);
-            left -= 1.0;
-            sum = Evaluation { f2: sum.f2 + moment.f2, violation: sum.violation + moment.violation };
-            let at_best = Evaluation { f2: sum.f2 + left * self.world.terms.least, ..sum }.over(count);
-            if left > 0.0 && rival.is_some_and(|rival| !at_best.is_as_good_as(rival)) {
-                return at_best;
-            }
-        }
-        sum.over(count)
-    }
-}
-
-fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+/// What a pattern is worth at a moment.
+pub(super) fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
     let lost = lost / snapshot.targets.len() as f64;
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);

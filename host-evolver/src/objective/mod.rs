@@ -7,6 +7,7 @@ mod chart;
 mod contour;
 mod fine;
 mod fitness;
+mod judge;
 mod lanes;
 mod lattice;
 mod model;
@@ -16,7 +17,8 @@ mod sharpen;
 mod tracer;
 mod world;
 
-pub use fitness::{CANDIDATES_PER_RING, Evaluation, Judge, SMALLEST_CLEARANCE};
+pub use fitness::{CANDIDATES_PER_RING, Evaluation, SMALLEST_CLEARANCE};
+pub use judge::Judge;
 pub use model::Model;
 pub use tracer::{Contours, Tracer};
 pub use world::{LATTICE_STEP, Snapshot, World};

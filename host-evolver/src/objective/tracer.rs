@@ -11,6 +11,9 @@ use grn_core::geometry::Point;
 /// A component's topology is in doubt when it changes within this pattern error: a cell of the lattice can hide a neck
 /// or a gap that shallow.
 const DOUBT: f64 = 0.02;
+/// So many nodes are looked at for a leak that is expected, before the pattern is taken to be closed: enough to get to a
+/// wall on either lattice.
+const LOOKED_AT_FOR_LEAKS: usize = 200;
 /// How far off a chart may be for models to be traced by it.
 const CHART_TOLERANCE: f64 = DOUBT / 4.0;
 
@@ -30,14 +33,13 @@ pub struct Tracer<'w> {
     world: &'w World,
     coarse: Follower<Kept<'w>>,
     fine: Option<Follower<Computed<'w>>>,
-    chart: Chart,
     outline_leaks: bool,
 }
 
 impl<'w> Tracer<'w> {
     /// A tracer for one world.
     pub fn new(world: &'w World) -> Self {
-        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, chart: Chart::default(), outline_leaks: false }
+        Tracer { world, coarse: Follower::new(Kept(world)), fine: None, outline_leaks: false }
     }
 
     /// A tracer that also fills [`Contours::leaks`], for drawing.
@@ -47,21 +49,34 @@ impl<'w> Tracer<'w> {
 
     /// The patterns of `model` at each snapshot of the world, in turn.
     pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
-        let targets = self.world.scenario().paths().len();
-        let charted = self.chart.draw(model, targets, CHART_TOLERANCE);
-        self.world.snapshots().iter().map(move |snapshot| (snapshot, self.trace(model, charted, snapshot)))
+        let chart = chart_of(self.world, model);
+        self.world.snapshots().iter().map(move |snapshot| {
+            let view = View { model, snapshot, chart: chart.as_ref() };
+            (snapshot, self.trace(view, false).unwrap_or_else(|| self.trace_finely(view)))
+        })
     }
 
-    fn trace(&mut self, model: &Model, charted: bool, snapshot: &Snapshot) -> Contours {
-        let view = View { model, snapshot, chart: charted.then_some(&self.chart) };
-        let mut attempt = Attempt { outline_leaks: self.outline_leaks, ..Attempt::default() };
-        if attempt.trace(&mut self.coarse, view) {
-            let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
-            attempt = Attempt { outline_leaks: self.outline_leaks, is_final: true, ..Attempt::default() };
-            attempt.trace(fine, view);
-        }
+    /// The pattern at a moment, if the lattice leaves no doubt about it. If `expects_leak`, it is quicker for one that
+    /// leaks and slower for others.
+    pub(super) fn trace(&mut self, view: View<'_>, expects_leak: bool) -> Option<Contours> {
+        let mut attempt = Attempt { outline_leaks: self.outline_leaks, expects_leak, ..Attempt::default() };
+        let doubtful = attempt.trace(&mut self.coarse, view);
+        (!doubtful).then(|| attempt.contours())
+    }
+
+    /// The pattern at a moment, as the fine lattice shows it.
+    pub(super) fn trace_finely(&mut self, view: View<'_>) -> Contours {
+        let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
+        let outline_leaks = self.outline_leaks;
+        let mut attempt = Attempt { outline_leaks, expects_leak: true, is_final: true, ..Attempt::default() };
+        attempt.trace(fine, view);
         attempt.contours()
     }
+}
+
+/// What models are traced by in a world, unless a chart cannot be accurate enough.
+pub(super) fn chart_of(world: &World, model: &Model) -> Option<Chart> {
+    Chart::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
 }
 
 /// What becomes of a target's component; `Closed` says which component it is.
@@ -76,6 +91,8 @@ enum Fate {
 #[derive(Default)]
 struct Attempt {
     outline_leaks: bool,
+    /// Whether to look for leaks before anything else.
+    expects_leak: bool,
     /// Whether to take what the lattice shows without doubting it.
     is_final: bool,
     rings: Vec<Vec<Point<f64>>>,
@@ -114,6 +131,9 @@ impl Attempt {
 
     /// The fate of the targets in the component of `start`, if that is not in doubt.
     fn explore<M: Medium>(&mut self, follower: &mut Follower<M>, start: NodeIndex, view: View<'_>) -> Option<Fate> {
+        if self.expects_leak && !self.outline_leaks && follower.finds_leak(start, 0.0, LOOKED_AT_FOR_LEAKS, view) {
+            return Some(Fate::Leaks);
+        }
         match follower.label(start, !self.outline_leaks, view) {
             Component::Leaks => {
                 if self.outline_leaks {
@@ -148,7 +168,7 @@ fn same_when_narrowed<M: Medium>(follower: &mut Follower<M>, fates: &[Fate], vie
         let Some(start) = follower.start(target, DOUBT, view) else { return false };
         let known = follower.component_of(start);
         if known <= first {
-            let closed = follower.probe(start, DOUBT, view) == Component::Closed;
+            let closed = !follower.finds_leak(start, DOUBT, usize::MAX, view);
             if closed == (fate == Fate::Leaks) {
                 return false;
             }

@@ -19,6 +19,8 @@ const FAR: f64 = 1e3;
 /// One moment of a scenario.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
+    /// Its place among the world's snapshots.
+    pub(super) place: usize,
     /// Where the targets are, metres.
     pub targets: Vec<Point<f64>>,
     /// What the mother robots perceive of the walls, metres.
@@ -74,14 +76,15 @@ impl World {
         let site = |node| Site::of(&world.lattice, node, world.clearance[node]);
         world.sites = world.lattice.nodes().map(site).collect();
         let x2: Vec<f64> = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
-        let snapshots = moments.into_iter().map(|targets| world.snapshot(targets, &x2));
-        world.snapshots = snapshots.collect();
+        let snapshots = moments.into_iter().enumerate();
+        world.snapshots = snapshots.map(|(place, targets)| world.snapshot(place, targets, &x2)).collect();
         world
     }
 
-    fn snapshot(&self, targets: Vec<Point<f64>>, x2: &[f64]) -> Snapshot {
+    fn snapshot(&self, place: usize, targets: Vec<Point<f64>>, x2: &[f64]) -> Snapshot {
         let x1 = self.lattice.nodes().map(|node| x1_at(&self.field, &targets, self.lattice.point(node)));
         Snapshot {
+            place,
             inputs: x1.zip(x2).map(|(x1, &x2)| [x1 as f32, x2 as f32]).collect(),
             target_inputs: targets.iter().map(|&target| inputs_at(self, &targets, target)).collect(),
             obstacle_points: self.scenario.obstacle_points(&targets),

@@ -8,8 +8,11 @@
 //!
 //! - **Active.** The worse half enters `C` with negative weights (eqs. 46 and 53), as in the tutorial and in pycma,
 //!   unless the settings are [`passive`](Settings::passive).
-//! - **Bounds.** The distribution is not bounded: samples are folded into the box (a smooth mirror, as in pycma). Within the middle nine tenths of every interval this changes nothing; an optimum on a wall, an edge or a
-//!   corner, where redrawing samples would hardly ever succeed, is found like any other.
+//! - **Damping.** Steps change more slowly than in the tutorial if the population is large for the dimension: with the
+//!   damping of pycma 4.5.0, see `cmaes/parameters.rs`.
+//! - **Bounds.** The distribution is not bounded: samples are folded into the box (a smooth mirror, as in pycma). Within
+//!   the middle nine tenths of every interval this changes nothing; an optimum on a wall, an edge or a corner, where
+//!   redrawing samples would hardly ever succeed, is found like any other.
 //! - **Units.** All coordinates start with the same step: scale them to similar sensitivity.
 //!
 //! [`minimise`] is the whole search. [`Cmaes`] is one generation at a time, for callers that evaluate in parallel,

@@ -45,9 +45,8 @@ pub fn at_most(a: &f64, b: &f64) -> bool {
 /// has no coordinate there is one vector, which is evaluated once.
 ///
 /// `evaluate(x, rival)` gives the fitness of `x`. A rival is one that `x` has to match: if `x` is strictly worse, any
-/// fitness strictly worse than the rival's will do, so an evaluation may stop as soon as it is sure to be lost. The
-/// rival of a trial is its target, and in the last generation the best vector so far; starting vectors have the best so
-/// far as their rival too if there is at most one generation, for then nothing else depends on their fitness.
+/// fitness strictly worse than the rival's will do, so an evaluation may stop as soon as it is sure to be lost: see
+/// [`Wanted`], and [`minimise_together`] to evaluate many at once.
 ///
 /// `better_or_equal(a, b)` says that `a` is at least as good as `b`. It should order every two fitnesses one way
 /// or the other and be transitive: [`at_most`] does so for a number, and
@@ -65,65 +64,110 @@ pub fn minimise<Fit: Clone, R: Rng + ?Sized>(
     mut evaluate: impl FnMut(&[f64], Option<&Fit>) -> Fit,
     better_or_equal: impl Fn(&Fit, &Fit) -> bool,
 ) -> Result<Outcome<Fit>, InitialError> {
-    settings.check_initial(bounds, initial)?;
-    if bounds.dimension() == 0 {
-        return Ok(Outcome { best: Vec::new(), fitness: evaluate(&[], None), evaluations: 1 });
-    }
     let strictly = |a: &Fit, b: &Fit| better_or_equal(a, b) && !better_or_equal(b, a);
-    let budget = settings.evaluations();
-    let mut evaluations = 0;
-    let mut score = |x: &[f64], rival: Option<&Fit>| {
-        evaluations += 1;
-        evaluate(x, rival)
+    let one_by_one = |vectors: &[Vec<f64>], wanted: Wanted<'_, Fit>| match wanted {
+        Wanted::All => vectors.iter().map(|x| evaluate(x, None)).collect(),
+        Wanted::Winners(rivals) => vectors.iter().zip(rivals).map(|(x, rival)| evaluate(x, Some(rival))).collect(),
+        Wanted::Best(rival) => {
+            let mut best = rival.cloned();
+            let mut score = |x: &Vec<f64>| {
+                let fitness = evaluate(x, best.as_ref());
+                if best.as_ref().is_none_or(|best| strictly(&fitness, best)) {
+                    best = Some(fitness.clone());
+                }
+                fitness
+            };
+            vectors.iter().map(&mut score).collect()
+        }
     };
+    minimise_together(settings, bounds, initial, rng, one_by_one, &better_or_equal)
+}
 
-    let size = settings.population().min(budget);
-    let starts_the_last_generation = budget - size <= size;
-    let mut population: Vec<(Vec<f64>, Fit)> = Vec::with_capacity(size);
-    let mut best: Option<Fit> = None;
-    while population.len() < size {
-        let x = initial.get(population.len()).cloned().unwrap_or_else(|| bounds.sample(rng));
-        let fitness = score(&x, best.as_ref().filter(|_| starts_the_last_generation));
-        if best.as_ref().is_none_or(|best| strictly(&fitness, best)) {
-            best = Some(fitness.clone());
-        }
-        population.push((x, fitness));
-    }
+/// Which of the vectors that are evaluated together need their exact fitness.
+#[derive(Clone, Copy, Debug)]
+pub enum Wanted<'a, Fit> {
+    /// Every one.
+    All,
+    /// Those that are as good as their own rival, a target each; the others may get any fitness that is strictly worse
+    /// than the rival's.
+    Winners(&'a [Fit]),
+    /// The best ones, if they are as good as the rival, the best vector so far; the others may get any fitness that is
+    /// strictly worse than the best's or the rival's. So it is in the last generation, for nothing else depends on the
+    /// others' fitness.
+    Best(Option<&'a Fit>),
+}
 
+/// The same as [`minimise`] with all vectors of a generation evaluated together: `evaluate(vectors, wanted)` gives a
+/// fitness for each.
+///
+/// # Errors
+/// As for [`minimise`].
+pub fn minimise_together<Fit: Clone, R: Rng + ?Sized>(
+    settings: &Settings,
+    bounds: &Bounds,
+    initial: &[Vec<f64>],
+    rng: &mut R,
+    mut evaluate: impl FnMut(&[Vec<f64>], Wanted<'_, Fit>) -> Vec<Fit>,
+    better_or_equal: impl Fn(&Fit, &Fit) -> bool,
+) -> Result<Outcome<Fit>, InitialError> {
+    settings.check_initial(bounds, initial)?;
+    let strictly = |a: &Fit, b: &Fit| better_or_equal(a, b) && !better_or_equal(b, a);
+    let (size, budget) = if bounds.dimension() == 0 {
+        (1, 1)
+    } else {
+        (settings.population().min(settings.evaluations()), settings.evaluations())
+    };
+    let mut population: Vec<Vec<f64>> = initial.iter().take(size).cloned().collect();
+    population.resize_with(size, || bounds.sample(rng));
     let mut left = budget - size;
-    while left > 0 {
-        let is_last = left <= size;
-        let mut next = population.clone();
-        for (target, place) in next.iter_mut().enumerate().take(left) {
-            let trial = trial(settings, bounds, &population, target, rng);
-            let rival = best.as_ref().filter(|_| is_last).unwrap_or(&place.1);
-            let fitness = score(&trial, Some(rival));
-            if best.as_ref().is_none_or(|best| strictly(&fitness, best)) {
-                best = Some(fitness.clone());
-            }
-            if better_or_equal(&fitness, &place.1) {
-                *place = (trial, fitness);
+    let mut trials = |population: &[Vec<f64>], left: &mut usize| -> Vec<Vec<f64>> {
+        let trials = (0..size.min(*left)).map(|target| trial(settings, bounds, population, target, rng));
+        let trials: Vec<_> = trials.collect();
+        *left -= trials.len();
+        trials
+    };
+    // Trials are made from the vectors, not from their fitness: those of the only generation can be evaluated with them.
+    let mut challengers = if left <= size { trials(&population, &mut left) } else { Vec::new() };
+    let mut fitness = if left == 0 {
+        let together: Vec<_> = population.iter().chain(&challengers).cloned().collect();
+        evaluate(&together, Wanted::Best(None))
+    } else {
+        evaluate(&population, Wanted::All)
+    };
+    let mut results = fitness.split_off(size);
+    loop {
+        let found = challengers.into_iter().zip(results);
+        for ((x, fitness), (trial, result)) in population.iter_mut().zip(&mut fitness).zip(found) {
+            if better_or_equal(&result, fitness) {
+                (*x, *fitness) = (trial, result);
             }
         }
-        left -= left.min(size);
-        population = next;
+        if left == 0 {
+            break;
+        }
+        challengers = trials(&population, &mut left);
+        let wanted = if left == 0 {
+            Wanted::Best(Some(&fitness[best_of(&fitness, strictly)]))
+        } else {
+            Wanted::Winners(&fitness)
+        };
+        results = evaluate(&challengers, wanted);
     }
 
-    let mut first_best = 0;
-    for (i, (_, fitness)) in population.iter().enumerate() {
-        if strictly(fitness, &population[first_best].1) {
-            first_best = i;
-        }
-    }
-    let (best, fitness) = population.swap_remove(first_best);
-    Ok(Outcome { best, fitness, evaluations })
+    let best = best_of(&fitness, strictly);
+    Ok(Outcome { best: population.swap_remove(best), fitness: fitness.swap_remove(best), evaluations: budget })
+}
+
+/// The place of the best; the first among equals.
+fn best_of<Fit>(fitness: &[Fit], strictly_better: impl Fn(&Fit, &Fit) -> bool) -> usize {
+    (1..fitness.len()).fold(0, |best, i| if strictly_better(&fitness[i], &fitness[best]) { i } else { best })
 }
 
 /// The vector that challenges member `target`. The population is full: at least four members.
-fn trial<Fit, R: Rng + ?Sized>(
+fn trial<R: Rng + ?Sized>(
     settings: &Settings,
     bounds: &Bounds,
-    population: &[(Vec<f64>, Fit)],
+    population: &[Vec<f64>],
     target: usize,
     rng: &mut R,
 ) -> Vec<f64> {
@@ -133,7 +177,7 @@ fn trial<Fit, R: Rng + ?Sized>(
             others[k] = rng.random_range(0..population.len());
         }
     }
-    let [x, base, plus, minus] = others.map(|i| &population[i].0);
+    let [x, base, plus, minus] = others.map(|i| &population[i]);
     let always = rng.random_range(0..x.len());
     let mut trial = x.clone();
     for (j, &(lo, hi)) in bounds.intervals().iter().enumerate() {

@@ -13,7 +13,7 @@
 //! | field | x1, x2 and their gradients |
 //! | rest | all genes' steady states with their slopes: for the gradient and for the integration |
 //! | gradient | that of the pattern error |
-//! | rk4-step | one integration step, after `rest`; a tick has four |
+//! | rk4-step | one integration step, after `rest`; a tick of the shipped blobs has one |
 //! | rk4-step-more | each further step in the same call |
 #![no_std]
 #![no_main]

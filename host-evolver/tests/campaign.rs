@@ -122,6 +122,30 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
 }
 
 #[test]
+fn variations_are_in_the_tables_and_not_in_the_figures() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    let two_targets = r#"
+[[transfer]]
+name = "two targets"
+from = ["channel"]
+file = "REPOSITORY/scenarios/channel-two-targets.toml"
+
+[vary]
+level = [0.75, 1.25]
+"#;
+    let more = small().replace("seeds = 3", "seeds = 2") + two_targets;
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").display().to_string().replace('\\', "/");
+    let plan = file(scratch.path(), &more.replace("REPOSITORY", &repository))?;
+    let out = scratch.path().join("out");
+    assert_done(&campaign(&plan, &out, &[]).output()?);
+    let transfers = text(&std::fs::read(out.join("transfers.csv"))?);
+    assert!(transfers.contains("\"two targets, level x 0.75\"") && !out.join("transfers-2.svg").exists());
+    let figure = text(&std::fs::read(out.join("transfers.svg"))?);
+    assert!(figure.contains("two targets") && !figure.contains("level x"));
+    Ok(())
+}
+
+#[test]
 fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     let scratch = tempfile::tempdir()?;
     let refused = |text_of_file: &str, more: &[&str], words: &[&str]| -> Outcome {

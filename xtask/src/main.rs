@@ -20,7 +20,7 @@ const HELP: &str = "cargo xtask TASK
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
-         run the paper's experiments (campaigns/*.toml, about half an hour on two cores; goes on where it was stopped)
+         run the paper's experiments (campaigns/*.toml, about ten minutes on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
   fuzz   feed the blob decoder 10 million mutated inputs and a robot 10 million random frames, then the decoder 10 million
          inputs of libFuzzer's (this part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)

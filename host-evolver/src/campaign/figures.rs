@@ -1,7 +1,7 @@
 //! The pictures of a campaign.
 
 use super::plan::{Plan, PlannedScenario, slug};
-use super::tables::{Measure, RunRow, Tables};
+use super::tables::{Measure, RunRow, Tables, TransferRow};
 use super::unit::{Moment, Unit};
 use crate::figures::{pareto_of, pattern};
 use crate::files::{self, FileError, read_blob};
@@ -29,8 +29,9 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
         draw(name, boxes(plan, &scenarios, tables, measure))?;
     }
     draw("convergence.svg", report::convergence(&convergence(plan, campaign)?))?;
-    if tables.transfers.iter().any(|row| row.runs * row.worlds > 1) {
-        draw("transfers.svg", rates(tables))?;
+    for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
+        let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
+        draw(&name, report::rates(figure))?;
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -124,9 +125,11 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<report::ConvergenceFigure
     Ok(report::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
 }
 
-fn rates(tables: &Tables) -> Result<String, FigureError> {
+fn rates(plan: &Plan, tables: &Tables) -> report::RatesFigure {
+    let is_varied =
+        |row: &TransferRow| plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer);
     let mut groups: Vec<report::RateGroup> = Vec::new();
-    for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1) {
+    for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1 && !is_varied(row)) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),
@@ -137,5 +140,5 @@ fn rates(tables: &Tables) -> Result<String, FigureError> {
             None => groups.push(report::RateGroup { title, rows: vec![line] }),
         }
     }
-    report::rates(&report::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() })
+    report::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() }
 }

@@ -70,6 +70,8 @@ pub struct PlannedTransfer {
     pub from: Vec<String>,
     /// The worlds.
     pub worlds: Vec<Scenario>,
+    /// Whether it is a variation of another.
+    pub varied: bool,
 }
 
 #[derive(Deserialize)]
@@ -153,6 +155,7 @@ impl Plan {
                     worlds: random.worlds(&world).map_err(fault)?,
                     name: table.name,
                     from: table.from,
+                    varied: false,
                 }),
                 None => {
                     for varied in file.vary.of(&world).map_err(fault)? {
@@ -160,6 +163,7 @@ impl Plan {
                         transfers.push(PlannedTransfer {
                             name: format!("{}{change}", table.name),
                             from: table.from.iter().map(|from| format!("{from}{change}")).collect(),
+                            varied: !change.is_empty(),
                             worlds: vec![varied],
                         });
                     }

@@ -45,6 +45,41 @@ pub struct RateRow {
     pub interval: (f64, f64),
 }
 
+impl RatesFigure {
+    /// The same on as many pages as it takes, none for no rows; a group that goes on overleaf keeps its title.
+    #[must_use]
+    pub fn pages(self) -> Vec<RatesFigure> {
+        let mut pages: Vec<RatesFigure> = Vec::new();
+        for RateGroup { title, rows } in self.groups {
+            let mut begun = false;
+            for row in rows {
+                let needed = lines_of(&row) + usize::from(!begun && !title.is_empty());
+                if pages.last().is_none_or(|page| page.lines() + needed > ROWS) {
+                    pages.push(RatesFigure { groups: Vec::new(), x_label: self.x_label.clone() });
+                    begun = false;
+                }
+                let Some(RatesFigure { groups, .. }) = pages.last_mut() else { continue };
+                match groups.last_mut().filter(|_| begun) {
+                    Some(group) => group.rows.push(row),
+                    None => groups.push(RateGroup { title: title.clone(), rows: vec![row] }),
+                }
+                begun = true;
+            }
+        }
+        pages
+    }
+
+    fn lines(&self) -> usize {
+        let lines =
+            |group: &RateGroup| usize::from(!group.title.is_empty()) + group.rows.iter().map(lines_of).sum::<usize>();
+        self.groups.iter().map(lines).sum()
+    }
+}
+
+fn lines_of(row: &RateRow) -> usize {
+    wrap(&row.label, SMALL, NAME).len().max(1)
+}
+
 /// Draws each rate as a dot and its interval as a bar on an axis from 0 to 100 %, one column wide, with the
 /// numbers beside it. Groups are set apart by their titles.
 ///
@@ -134,9 +169,7 @@ fn check(figure: &RatesFigure) -> Result<(), FigureError> {
     if let Some(index) = rows().position(outside) {
         return Err(FigureError::OutOfRange { what: "rate of row", index, expected: "within its interval" });
     }
-    let titles = figure.groups.iter().filter(|group| !group.title.is_empty()).count();
-    let lines = rows().map(|row| wrap(&row.label, SMALL, NAME).len().max(1)).sum::<usize>();
-    let found = titles + lines;
+    let found = figure.lines();
     if found > ROWS { Err(FigureError::TooMany { what: "rows", found, limit: ROWS }) } else { Ok(()) }
 }
 
@@ -186,6 +219,25 @@ mod tests {
         read(&rates(&figure).unwrap());
         figure.groups[0].rows.push(row("a", 0.5, (0.4, 0.6)));
         assert_eq!(rates(&figure), Err(FigureError::TooMany { what: "rows", found: ROWS + 1, limit: ROWS }));
+    }
+
+    #[test]
+    fn what_is_too_much_for_a_page_goes_on_overleaf() {
+        let group = |title: &str, count: usize| RateGroup {
+            title: title.into(),
+            rows: (0..count).map(|index| row(&format!("{title}{index}"), 0.5, (0.4, 0.6))).collect(),
+        };
+        let groups = vec![group("a", 30), group("b", 13), group("c", 60)];
+        let figure = RatesFigure { groups: groups.clone(), x_label: "%".into() };
+        let pages = figure.pages();
+        let titles = |page: &RatesFigure| page.groups.iter().map(|group| group.title.clone()).collect::<Vec<_>>();
+        assert_eq!(pages.iter().map(titles).collect::<Vec<_>>(), [vec!["a", "b"], vec!["b", "c"], vec!["c"]]);
+        for page in &pages {
+            read(&rates(page).unwrap());
+        }
+        let rows = |groups: Vec<RateGroup>| groups.into_iter().flat_map(|group| group.rows).collect::<Vec<_>>();
+        assert_eq!(pages.into_iter().flat_map(|page| rows(page.groups)).collect::<Vec<_>>(), rows(groups));
+        assert!(RatesFigure { groups: Vec::new(), x_label: String::new() }.pages().is_empty());
     }
 
     #[test]

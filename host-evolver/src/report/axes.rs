@@ -7,6 +7,7 @@
 use super::error::FigureError;
 use super::style::{FONTS, INK, LABEL, LIGHT, SMALL, THIN};
 use super::svg::{Anchor, Font, Paint, Rect, Svg};
+use super::text::width;
 use plotters::coord::ranged1d::{KeyPointHint, KeyPointWeight, NoDefaultFormatting, ValueFormatter};
 use plotters::prelude::*;
 
@@ -80,6 +81,12 @@ impl Axis {
             true => self.lo,
             false => value,
         }
+    }
+
+    /// How far from a vertical axis its label stands: clear of the numbers.
+    pub fn label_distance(&self) -> f64 {
+        let widest = self.ticks.iter().map(|tick| width(&tick.1, SMALL, false)).fold(0.0, f64::max);
+        (widest + 9.0).max(LEFT - 5.0)
     }
 
     /// The words at a chart coordinate: none where there is no tick.
@@ -163,7 +170,7 @@ impl Chart {
         if !self.x_label.is_empty() {
             svg.text(self.x_label, (middle, self.rect.bottom() + 23.0), &Font::new(LABEL, Anchor::Middle));
         }
-        let at = (self.rect.x - LEFT + 5.0, self.rect.y + self.rect.h / 2.0);
+        let at = (self.rect.x - self.y.label_distance(), self.rect.y + self.rect.h / 2.0);
         svg.turned_text(self.y_label, at, -90.0, &Font::new(LABEL, Anchor::Middle));
         Ok(())
     }

@@ -92,12 +92,14 @@ pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>
         top = 18.0;
     }
     let entries = entries(points, &front);
-    let (base, _) = legend(&mut svg, 40.0, top + 6.0, COLUMN - 4.0, SMALL, &entries);
-    let rect = Rect::new(40.0, base + 8.0, COLUMN - 48.0, 140.0);
+    let y = error_axis(points, reference);
+    let left = y.label_distance() + LABEL;
+    let (base, _) = legend(&mut svg, left, top + 6.0, COLUMN - 4.0, SMALL, &entries);
+    let rect = Rect::new(left, base + 8.0, COLUMN - left - 8.0, 140.0);
     let chart = Chart {
         rect,
         x: complexity(points),
-        y: error_axis(points, reference),
+        y,
         x_label: "Complexity f₁ (tree nodes)",
         y_label: "Pattern error f₂ (–)",
         x_numbers: true,

@@ -97,8 +97,23 @@ pub(super) fn width(text: &str, size: f64, bold: bool) -> f64 {
     if bold { natural * 1.12 } else { natural }
 }
 
-/// Breaks an expression after commas into lines no wider than `limit` where commas allow it.
+/// Breaks words or an expression after commas and spaces into lines no wider than `limit` where these allow it: no more
+/// lines than it takes, and these as even as can be.
 pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
+    let mut lines = filled(text, size, limit);
+    loop {
+        let widest = lines.iter().map(|line| width(line, size, false)).fold(0.0, f64::max);
+        let narrower = filled(text, size, widest - 0.1);
+        let its_widest = narrower.iter().map(|line| width(line, size, false)).fold(0.0, f64::max);
+        if narrower.len() > lines.len() || its_widest >= widest {
+            return lines;
+        }
+        lines = narrower;
+    }
+}
+
+/// Lines that each take as much as they can.
+fn filled(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for part in text.split_inclusive([',', ' ']) {
         let Some(line) = lines.last_mut() else {
@@ -137,6 +152,14 @@ mod tests {
         let lines = wrap(text, 8.0, 60.0);
         assert!(lines.len() > 1);
         assert_eq!(lines.concat(), text);
+    }
+
+    #[test]
+    fn wrapped_lines_are_even() {
+        let limit = width("printed NAND-XNOR (1", 8.0, false);
+        assert_eq!(wrap("printed NAND-XNOR (1 B)", 8.0, limit), ["printed", "NAND-XNOR (1 B)"]);
+        assert_eq!(wrap("one two", 8.0, 1000.0), ["one two"]);
+        assert!(wrap("", 8.0, 10.0).is_empty());
     }
 
     #[test]

@@ -9,9 +9,9 @@
 //! Colours are those of Okabe and Ito, which people with colour-blindness can tell apart; every
 //! distinction is also made by shape, dash or lightness, so that a grey print keeps it.
 //!
-//! Charts with axes are drawn by `plotters` ([`axes`]). Trees, networks and maps need fractional
+//! Charts with axes are drawn by `plotters` (`axes.rs`). Trees, networks and maps need fractional
 //! coordinates, subscripts and measured text, which that crate's SVG backend does not have without a font
-//! library, so they use the small writer in [`svg`].
+//! library, so they use the small writer in `svg.rs`.
 
 mod axes;
 mod boxes;

@@ -11,7 +11,7 @@ pub const PAGE_HEIGHT: f64 = 620.0;
 pub const LABEL: f64 = 8.0;
 /// Size of tick labels and legends, points: the smallest text but for subscripts.
 pub const SMALL: f64 = 7.2;
-/// Typefaces, the first installed one is used; all have the widths in [`super::text`].
+/// Typefaces: the first installed one is used. Figures are laid out for a wider one.
 pub const FONTS: &str = "Helvetica, Arial, Liberation Sans, sans-serif";
 
 /// Line of axes, frames and outlines, points.

@@ -23,6 +23,16 @@ pub fn everything() -> Percept {
     }
 }
 
+/// The same with all obstacle points so many millimetres farther away.
+pub fn everything_farther(north: i16) -> Percept {
+    let mut percept = everything();
+    let told = percept.heard.iter_mut().flat_map(|message| &mut message.obstacles).map(|report| &mut report.position);
+    for position in percept.obstacles.iter_mut().chain(told) {
+        position.y += north;
+    }
+    percept
+}
+
 /// The same with one neighbour heard in a tick, each in its turn.
 pub fn in_turn(tick: u32) -> Percept {
     Percept { heard: filled([neighbour((tick % u32::from(NEIGHBOURS)) as u8)]), ..everything() }

@@ -2,7 +2,7 @@
 
 use super::controller::BROADCAST_PERIOD;
 use super::epuck2::TICKS_PER_SECOND;
-use super::message::{MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
+use super::message::{MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
 use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
@@ -98,12 +98,20 @@ impl<S: Scalar> Knowledge<S> {
             }
             self.neighbours.meet(message.sender, message.position, here, self.tick);
         }
-        // Robots keep their turns, so that the same ones are heard together again and again.
-        let told = nth_in_turn(&percept.heard, self.tick / BROADCAST_PERIOD).map(|message| &message.obstacles);
-        for report in told.into_iter().flatten() {
+        for report in self.chosen(&percept.heard).into_iter().flat_map(|message| &message.obstacles) {
             self.obstacles.learn(report);
         }
         self.obstacles.settle();
+    }
+
+    /// The message whose obstacle points are learned.
+    ///
+    /// Robots keep their turns, with the same ones heard together and the same points told every so often. Chosen in turn,
+    /// too, some points would never be learned; multiples of the golden ratio are in step with nothing.
+    fn chosen<'m>(&self, heard: &'m [Message]) -> Option<&'m Message> {
+        const GOLDEN_RATIO_Q32: u32 = 0x9e37_79b9;
+        let share = (self.tick / BROADCAST_PERIOD).wrapping_mul(GOLDEN_RATIO_Q32);
+        heard.get(((u64::from(share) * heard.len() as u64) >> u32::BITS) as usize)
     }
 
     fn grow_older(&mut self, here: Millimetres) {

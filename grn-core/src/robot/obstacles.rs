@@ -20,13 +20,15 @@ const CELL_LOG2: u32 = 5;
 /// Places to look first, several times as many as points.
 const SLOTS: usize = 128;
 
-/// The known points. Dozens arrive in a tick, nearly all of them known already.
+/// The known points. A dozen arrive in a tick, nearly all of them known already.
 ///
 /// Who is nearer is decided in whole millimetres, which messages are in anyway, and from where the robot was when ages
 /// were last counted: in a quarter of a second it moves 36 mm at most, less than [`SLACK`].
 #[derive(Clone, Debug)]
 pub struct ObstacleMap<S> {
     known: Vec<ObstacleReport, MAX_OBSTACLES>,
+    /// How far from `here` each of them is, squared, mm².
+    squares: Vec<u32, MAX_OBSTACLES>,
     /// The points, in metres, that can be the nearest until distances are measured again.
     near: Vec<Point<S>, MAX_OBSTACLES>,
     /// By a hash of the cell: which known point to compare with first.
@@ -34,7 +36,7 @@ pub struct ObstacleMap<S> {
     here: Millimetres,
     farthest: usize,
     largest: u32,
-    /// Points were added since distances were measured; there is room for more.
+    /// Points came since it was found out which ones are near.
     stale: bool,
 }
 
@@ -42,6 +44,7 @@ impl<S: Scalar> ObstacleMap<S> {
     pub fn new() -> Self {
         ObstacleMap {
             known: Vec::new(),
+            squares: Vec::new(),
             near: Vec::new(),
             slots: [0; SLOTS],
             here: Millimetres::default(),
@@ -69,7 +72,9 @@ impl<S: Scalar> ObstacleMap<S> {
             self.known.retain(|obstacle| obstacle.age <= FORGET_UNITS);
         }
         self.here = here;
-        self.measure();
+        self.squares = filled(self.known.iter().map(|known| squared_distance(known.position, here)));
+        self.find_farthest();
+        self.stale = true;
     }
 
     /// Takes a point in, if it is not forgotten and nearer than one of the known.
@@ -84,8 +89,8 @@ impl<S: Scalar> ObstacleMap<S> {
             known.age = known.age.min(told.age);
             return;
         }
-        let too_far = self.known.is_full() && squared_distance(told.position, self.here) > self.largest;
-        if too_far || told.age > FORGET_UNITS {
+        let too_far = || self.known.is_full() && squared_distance(told.position, self.here) > self.largest;
+        if told.age > FORGET_UNITS || too_far() {
             return;
         }
         if let Some(index) = self.place(told)
@@ -95,11 +100,17 @@ impl<S: Scalar> ObstacleMap<S> {
         }
     }
 
-    /// Measures what was learned.
+    /// Finds those that can be the nearest: every other one is more than 2 [`SLACK`] farther away from `here`, hence
+    /// farther away from any place within [`SLACK`] of it.
     pub fn settle(&mut self) {
-        if self.stale {
-            self.measure();
+        if !self.stale {
+            return;
         }
+        self.stale = false;
+        let nearest = self.squares.iter().copied().min().unwrap_or(0);
+        let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
+        let near = self.known.iter().zip(&self.squares).filter(|&(_, &square)| square <= limit);
+        self.near = filled(near.map(|(known, _)| metres(known.position)));
     }
 
     /// Where the point is kept now, if it is.
@@ -110,34 +121,28 @@ impl<S: Scalar> ObstacleMap<S> {
             known.age = known.age.min(told.age);
             return Some(index);
         }
+        let square = squared_distance(told.position, self.here);
         let index = if self.known.push(*told).is_ok() {
+            // As long as the other list.
+            let _ = self.squares.push(square);
             self.known.len() - 1
-        } else if squared_distance(told.position, self.here) < self.largest {
+        } else if square < self.largest {
             *self.known.get_mut(self.farthest)? = *told;
+            *self.squares.get_mut(self.farthest)? = square;
             self.farthest
         } else {
             return None;
         };
-        // Which one is the farthest matters to a full map only.
         self.stale = true;
+        // Which one is the farthest matters to a full map only.
         if self.known.is_full() {
-            self.measure();
+            self.find_farthest();
         }
         Some(index)
     }
 
-    /// Finds the farthest point and those that can be the nearest: every other one is more than 2 [`SLACK`] farther away
-    /// from `here`, hence farther away from any place within [`SLACK`] of it.
-    fn measure(&mut self) {
-        self.stale = false;
-        let here = self.here;
-        let squares: Vec<u32, MAX_OBSTACLES> =
-            filled(self.known.iter().map(|known| squared_distance(known.position, here)));
-        (self.farthest, self.largest) = largest_of(squares.iter().copied());
-        let nearest = squares.iter().copied().min().unwrap_or(0);
-        let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
-        let near = self.known.iter().zip(&squares).filter(|&(_, &square)| square <= limit);
-        self.near = filled(near.map(|(known, _)| metres(known.position)));
+    fn find_farthest(&mut self) {
+        (self.farthest, self.largest) = largest_of(self.squares.iter().copied());
     }
 }
 
@@ -185,8 +190,10 @@ mod tests {
         for _ in 2..FORGET_UNITS {
             map.grow_older(here);
         }
+        map.settle();
         assert_eq!((map.known().len(), map.near().len()), (1, 1));
         map.grow_older(here);
+        map.settle();
         assert!(map.near().is_empty() && map.known().is_empty());
     }
 }

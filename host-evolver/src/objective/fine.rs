@@ -15,13 +15,16 @@ pub(super) struct FineLattice {
     runs: Vec<OnceLock<Box<Run>>>,
 }
 
+/// At so many moments x1 is kept, which takes 5 KB a run; for more it would not pay.
+const MOST_KEPT_MOMENTS: usize = 64;
+
 /// What no model changes at eight nodes.
 #[derive(Debug)]
 struct Run {
     clearance: [f64; WIDTH],
     sites: [Site; WIDTH],
     x2: Lanes,
-    /// At each moment.
+    /// At each of the first [`MOST_KEPT_MOMENTS`].
     x1: Vec<OnceLock<Lanes>>,
 }
 
@@ -48,7 +51,7 @@ impl Computed<'_> {
                 clearance,
                 sites: std::array::from_fn(site),
                 x2: self.0.x2_at_all(Lanes(clearance)),
-                x1: vec![OnceLock::new(); self.0.snapshots().len()],
+                x1: vec![OnceLock::new(); self.0.snapshots().len().min(MOST_KEPT_MOMENTS)],
             })
         })
     }
@@ -65,7 +68,7 @@ impl Medium for Computed<'_> {
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
         let run = self.run(first);
         let x1 = || self.0.x1_at_all(snapshot, &self.lattice().run(first));
-        [*run.x1[snapshot.place].get_or_init(x1), run.x2]
+        [run.x1.get(snapshot.place).map_or_else(x1, |kept| *kept.get_or_init(x1)), run.x2]
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         self.0.inputs_at(snapshot, self.lattice().point(node))

@@ -98,9 +98,14 @@ const IMAGES: [Image; 10] = [
 const CODE_BAR: usize = 48 * 1024;
 /// Static memory and stack together, bytes.
 const MEMORY_BAR: usize = 16 * 1024;
-/// Ends of a cost's name, for the printed two- and three-gene models, and the instructions it must stay below.
-const COST_BARS: [(&str, usize); 3] =
-    [(" nand-xnor rk4-step", 1_500), (" nand-xnor tick", 10_000), (" andn-nand-xnor tick", 10_000)];
+/// Ends of costs' names, for the printed two- and three-gene models, and the instructions they must stay below.
+const COST_BARS: [(&str, usize); 5] = [
+    (" nand-xnor rk4-step", 1_500),
+    ("-xnor tick", 10_000),
+    ("-xnor tick-dearest", 10_000),
+    ("-xnor tick-all-heard-at-once", 10_000),
+    ("-xnor tick-all-new-at-once", 10_000),
+];
 
 impl Image {
     fn name(&self) -> String {

@@ -9,6 +9,7 @@
 //! | tick-dearest | the dearest of these: it speaks, or sorts what it knows |
 //! | tick-all-heard-at-once | the dearest when all neighbours are heard in every tick, which a radio hardly manages |
 //! | tick-all-new-at-once | the same in a controller's first tick, when nothing is known yet |
+//! | tick-all-displaced | the same when memory is full of obstacle points, all farther away than those it perceives |
 //! | tick-nothing-perceived | all is remembered, nothing seen or heard: the mean without the update of knowledge |
 //! | field | x1, x2 and their gradients |
 //! | rest | all genes' steady states with their slopes: for the gradient and for the integration |
@@ -72,6 +73,11 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     let Ok(mut controller) = Controller::<S>::new(blob, 0) else { return false };
     let everything = scene::everything();
     let first = instructions(&mut || drop(black_box(controller.tick(black_box(&everything)))));
+    let Ok(mut full) = Controller::<S>::new(blob, 0) else { return false };
+    for north in [500, 1000] {
+        full.tick(&scene::everything_farther(north));
+    }
+    let displaced = instructions(&mut || drop(black_box(full.tick(black_box(&everything)))));
     // The sum and the largest of several ticks.
     let mut ticks = |percept: fn(u32) -> Percept| {
         let cost = |tick| {
@@ -88,6 +94,7 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     show("tick-dearest", dearest);
     show("tick-all-heard-at-once", all_heard);
     show("tick-all-new-at-once", first);
+    show("tick-all-displaced", displaced);
     show("tick-nothing-perceived", remembering.div_ceil(TICKS));
 
     let network: Network<S> = blob.network.cast();

@@ -14,7 +14,7 @@ use crate::robot::controller::Controller;
 use crate::robot::percept::{Command, Percept};
 use crate::robot::slots::{Layout, MAX_BLOB, SlotError, Slots};
 use crate::scalar::Scalar;
-use embedded_storage::nor_flash::NorFlash;
+use embedded_storage::nor_flash::{NorFlash, NorFlashErrorKind};
 use heapless::{String, Vec};
 
 /// A blob on trial is confirmed after so many ticks.
@@ -49,9 +49,12 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
         let name = String::try_from(name).unwrap_or_default();
         let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, arithmetic };
         let mut server = Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot };
-        // Without a blob in charge the robot waits for one.
-        let _ = server.robot.reset(0);
-        Ok(server)
+        match server.robot.reset(0) {
+            // Without a blob in charge the robot waits for one.
+            Ok(()) | Err(Refusal::NoController) => Ok(server),
+            // What was sound a moment ago cannot be read now.
+            Err(_) => Err(SlotError::Flash(NorFlashErrorKind::Other)),
+        }
     }
 
     /// Takes the next byte from the link. Bytes to send, if it ended a request.
@@ -135,17 +138,20 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     #[inline(never)]
     fn activate(&mut self, identity: Identity) -> Result<(), Refusal> {
         self.slots.activate(identity)?;
-        self.reset(self.number)?;
-        self.ticks = 0;
-        Ok(())
+        self.change()
     }
 
     #[inline(never)]
     fn roll_back(&mut self, identity: Identity) -> Result<(), Refusal> {
         self.slots.roll_back(identity)?;
-        self.reset(self.number)?;
+        self.change()
+    }
+
+    /// Another blob is in charge: the old one drives no longer, even if the flash fails now.
+    fn change(&mut self) -> Result<(), Refusal> {
+        self.controller = None;
         self.ticks = 0;
-        Ok(())
+        self.reset(self.number)
     }
 
     #[inline(never)]

@@ -24,12 +24,13 @@ pub fn check(bless: bool, tally: &mut Tally) {
     let ready = tools::emulators(&["qemu-system-arm"])
         .and_then(|()| tools::programs(&TOOLS))
         .and_then(|()| Compiler::find(&[TARGET]));
-    let chip = ready.as_ref().map(|compiler| compiler.environment(TARGET)).unwrap_or_default();
     let checks: Vec<(&str, Result<(), String>)> = match ready {
         Err(error) => vec![("compilers and emulator are there", Err(error))],
-        Ok(_) => {
+        Ok(compiler) => {
+            let chip = compiler.environment(TARGET);
             let on_the_chip = make("run-chip", &chip);
-            let golden = Golden { folder: repository().join("firmware/golden"), bless, task: "c" };
+            let folder = repository().join("firmware/golden");
+            let golden = Golden { folder, bless, task: "c", tolerance: compiler.tolerance() };
             let costs = costs(&on_the_chip, make("size", &chip));
             vec![
                 ("the header is C++ too", header()),

@@ -153,7 +153,8 @@ pub fn check(bless: bool, tally: &mut Tally) {
     };
     println!("\nfirmware: {compiler}");
     host_checks(&root, tally);
-    let golden = Golden { folder: root.join("firmware/golden"), bless, task: "target" };
+    let golden =
+        Golden { folder: root.join("firmware/golden"), bless, task: "target", tolerance: compiler.tolerance() };
     for images in IMAGES.chunk_by(Image::built_with) {
         let built = build(&compiler, &root, images);
         for image in images {

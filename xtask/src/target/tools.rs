@@ -40,6 +40,15 @@ impl Compiler {
         command
     }
 
+    /// How far what it builds may be from the golden sizes and costs, per cent. They are those of the first sort; Debian's
+    /// version of the compiler is up to 4 off.
+    pub fn tolerance(&self) -> usize {
+        match self {
+            Compiler::Installed(_) => 2,
+            Compiler::Debian(_) => 5,
+        }
+    }
+
     /// What makes cargo use it for a target.
     pub fn environment(&self, target: &str) -> Vec<(String, String)> {
         let Compiler::Debian(_) = self else { return Vec::new() };

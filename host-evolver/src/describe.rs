@@ -1,6 +1,5 @@
 //! A network in words: names, equations, an indented tree, and the data of its figures.
 
-use crate::report;
 use grn_core::network::{Gene, Network, Source};
 
 /// The name of a gene: y1, y2, … and M for the last.
@@ -34,18 +33,18 @@ fn regulation(network: &Network<f32>, gene: &Gene<f32>) -> String {
 }
 
 /// The network unfolded into a syntax tree from M down; a gene read twice appears twice.
-pub fn syntax_tree(network: &Network<f32>) -> report::SyntaxTree {
+pub fn syntax_tree(network: &Network<f32>) -> grn_figures::SyntaxTree {
     subtree(network, Source::Gene((network.genes().len() - 1) as u8))
 }
 
-fn subtree(network: &Network<f32>, source: Source) -> report::SyntaxTree {
+fn subtree(network: &Network<f32>, source: Source) -> grn_figures::SyntaxTree {
     match source {
         Source::X1 | Source::X2 => {
-            report::SyntaxTree { label: source_name(network, source), detail: None, children: Vec::new() }
+            grn_figures::SyntaxTree { label: source_name(network, source), detail: None, children: Vec::new() }
         }
         Source::Gene(index) => {
             let gene = &network.genes()[usize::from(index)];
-            report::SyntaxTree {
+            grn_figures::SyntaxTree {
                 label: gene.motif.name().into(),
                 detail: Some(format!("{}", gene.theta)),
                 children: gene.inputs.iter().map(|&input| subtree(network, input)).collect(),
@@ -56,7 +55,7 @@ fn subtree(network: &Network<f32>, source: Source) -> report::SyntaxTree {
 
 /// Nodes of the syntax tree, functions and terminals: the paper's f1.
 pub fn tree_size(network: &Network<f32>) -> usize {
-    fn size(tree: &report::SyntaxTree) -> usize {
+    fn size(tree: &grn_figures::SyntaxTree) -> usize {
         1 + tree.children.iter().map(size).sum::<usize>()
     }
     size(&syntax_tree(network))
@@ -64,7 +63,7 @@ pub fn tree_size(network: &Network<f32>) -> usize {
 
 /// The syntax tree in function notation, with θ in brackets: `(XNOR[0.9256] (NAND[0.8393] x1 x1) x2)`.
 pub fn expression(network: &Network<f32>) -> String {
-    fn write(tree: &report::SyntaxTree) -> String {
+    fn write(tree: &grn_figures::SyntaxTree) -> String {
         let Some(theta) = &tree.detail else { return tree.label.clone() };
         let operands: String = tree.children.iter().map(|child| format!(" {}", write(child))).collect();
         format!("({}[{theta}]{operands})", tree.label)
@@ -92,7 +91,7 @@ pub fn without_theta(expression: &str) -> String {
 
 /// The syntax tree as indented text.
 pub fn tree_text(network: &Network<f32>) -> String {
-    fn draw(tree: &report::SyntaxTree, first: &str, rest: &str, text: &mut String) {
+    fn draw(tree: &grn_figures::SyntaxTree, first: &str, rest: &str, text: &mut String) {
         let theta = tree.detail.as_ref().map(|theta| format!("  θ = {theta}")).unwrap_or_default();
         text.push_str(&format!("{first}{}{theta}\n", tree.label));
         for (place, child) in tree.children.iter().enumerate() {
@@ -107,8 +106,8 @@ pub fn tree_text(network: &Network<f32>) -> String {
 }
 
 /// The genes for a GRN graph, G1, G2, … in order.
-pub fn graph(network: &Network<f32>) -> Vec<report::Gene> {
-    let gene = |(index, gene): (usize, &Gene<f32>)| report::Gene {
+pub fn graph(network: &Network<f32>) -> Vec<grn_figures::Gene> {
+    let gene = |(index, gene): (usize, &Gene<f32>)| grn_figures::Gene {
         name: format!("G{}", index + 1),
         motif: gene.motif.name().into(),
         theta: f64::from(gene.theta),
@@ -116,11 +115,11 @@ pub fn graph(network: &Network<f32>) -> Vec<report::Gene> {
             .inputs
             .iter()
             .enumerate()
-            .map(|(operand, &source)| report::Input {
+            .map(|(operand, &source)| grn_figures::Input {
                 source: match source {
-                    Source::X1 => report::Source::X1,
-                    Source::X2 => report::Source::X2,
-                    Source::Gene(earlier) => report::Source::Gene(usize::from(earlier)),
+                    Source::X1 => grn_figures::Source::X1,
+                    Source::X2 => grn_figures::Source::X2,
+                    Source::Gene(earlier) => grn_figures::Source::Gene(usize::from(earlier)),
                 },
                 activates: gene.motif.rises_with(operand),
             })

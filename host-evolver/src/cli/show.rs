@@ -47,7 +47,7 @@ fn identity(blob: &Blob) -> String {
 }
 
 /// Nodes of the syntax tree, functions and terminals.
-fn nodes(tree: &crate::report::SyntaxTree) -> usize {
+fn nodes(tree: &grn_figures::SyntaxTree) -> usize {
     1 + tree.children.iter().map(nodes).sum::<usize>()
 }
 

@@ -5,9 +5,9 @@ use super::profile::{Profile, Sigmoid};
 use super::ring::candidates;
 use super::tracer::Contours;
 use super::world::{Snapshot, World};
-use crate::search::nsga2::Scores;
 use firmware_sim::scenario::Ring;
 use grn_core::geometry::Point;
+use grn_optimisers::nsga2::Scores;
 use std::cmp::Ordering;
 
 /// Candidate points per ring that f2 averages over.

@@ -12,7 +12,6 @@ pub mod figures;
 pub mod files;
 pub mod objective;
 pub mod objectives;
-pub mod port;
 pub mod published;
 pub mod run;
 pub mod simulation;

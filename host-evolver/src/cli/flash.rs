@@ -1,14 +1,13 @@
 //! `grn flash`.
 
 use super::{Answer, Failure, about, print};
-use crate::port::Port;
 use crate::slot_file::{DEFAULT_ADDRESS, SlotFile};
-use firmware_sim::link::flashing::{self, Flashed, Progress};
-use firmware_sim::link::{Client, Patience};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::MAX_WIRE;
 use grn_core::robot::link::message::{About, MAX_CHUNK, encode_request};
 use grn_core::robot::link::message::{Begin, Chunk};
+use grn_link::flashing::{self, Flashed, Progress};
+use grn_link::{Client, Patience, Port};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -1,7 +1,6 @@
 //! Ways to a robot: serial ports and sockets.
 
-use firmware_sim::link::Wire;
-use firmware_sim::link::wire::read_within;
+use crate::wire::{Wire, read_within};
 use serial2::SerialPort;
 use std::convert::Infallible;
 use std::fmt;

@@ -1,7 +1,7 @@
 //! A blob onto a robot: upload, verify, activate, confirm.
 
-use super::client::{Client, LinkError};
-use super::wire::Wire;
+use crate::client::{Client, LinkError};
+use crate::wire::Wire;
 use grn_core::blob::Identity;
 use grn_core::robot::link::Refusal;
 use grn_core::robot::link::message::{Activate, Begin, Chunk, Commit, Confirm, MAX_CHUNK, Status};

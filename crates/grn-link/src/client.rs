@@ -1,6 +1,6 @@
 //! Requests to a robot: sent again until they are answered, for a bounded number of times.
 
-use super::wire::Wire;
+use crate::wire::Wire;
 use core::fmt;
 use core::time::Duration;
 use grn_core::robot::link::Refusal;

@@ -1,7 +1,7 @@
 //! From models, worlds and runs to the plain data that figures are drawn from.
 
+use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{FrontMember, Individual, Knee};
-use crate::objective::{Contours, Model, Snapshot, Tracer, World};
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
 use firmware_sim::metrics::largest_gap;
@@ -87,7 +87,7 @@ fn short_expression(individual: &Individual) -> String {
         let operands: Vec<String> = tree.children.iter().map(write).collect();
         if operands.is_empty() { tree.label.clone() } else { format!("{}({})", tree.label, operands.join(", ")) }
     }
-    write(&crate::describe::syntax_tree(&network))
+    write(&crate::model::describe::syntax_tree(&network))
 }
 
 /// The pattern at each snapshot.

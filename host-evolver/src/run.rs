@@ -3,12 +3,12 @@
 //! Everything in it is written whole or not at all and depends only on scenario and settings, so an interrupted and
 //! resumed run leaves the same bytes as one left alone.
 
-use crate::deploy;
-use crate::describe;
+use crate::evaluation::{Model, World};
 use crate::evolve::{FrontMember, Milestone, Search, Settings, State};
 use crate::figures;
 use crate::files::{self, FileError};
-use crate::objective::{Model, World};
+use crate::model::deploy;
+use crate::model::describe;
 
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::{Blob, FORMAT_VERSION};

@@ -3,10 +3,10 @@
 use super::plan::{Plan, PlannedScenario, slug};
 use super::tables::{Measure, RunRow, Tables, TransferRow};
 use super::unit::{Moment, Unit};
-use crate::describe;
+use crate::evaluation::{Model, World};
 use crate::figures::{pareto_of, pattern};
 use crate::files::{self, FileError, read_blob};
-use crate::objective::{Model, World};
+use crate::model::describe;
 use grn_figures::FigureError;
 use grn_figures::KneeKind;
 use grn_optimisers::statistics::quartiles;

@@ -1,9 +1,9 @@
 //! `grn show`.
 
 use super::{Answer, Failure, about, print, print_json};
-use crate::describe;
+use crate::evaluation::Model;
 use crate::files::read_blob;
-use crate::objective::Model;
+use crate::model::describe;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde_json::{Value, json};
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! What decides a run besides the scenario.
 
-use crate::variation::MotifSet;
+use crate::model::variation::MotifSet;
 use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
 use std::fmt;

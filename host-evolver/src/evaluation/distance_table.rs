@@ -29,21 +29,21 @@ impl Sigmoid {
 
 /// A sum of sigmoids of a distance.
 #[derive(Clone, Debug)]
-pub(super) struct Profile {
+pub(super) struct DistanceTable {
     sigmoids: Vec<Sigmoid>,
     per_spacing: f64,
     /// At each knot of squared distance the value and a sixth of the second difference.
     knots: Vec<[f64; 2]>,
 }
 
-impl Profile {
+impl DistanceTable {
     /// Tabulates a sum of sigmoids.
     pub(super) fn new(sigmoids: Vec<Sigmoid>) -> Self {
         let steepest = sigmoids.iter().fold(1e-3, |most, sigmoid| sigmoid.slope.abs().max(most));
         let spacing = (SPACING_TIMES_STEEPNESS / steepest).min(LARGEST_SPACING);
         let reach = sigmoids.iter().map(|sigmoid| sigmoid.threshold + REACH / sigmoid.slope.abs()).fold(0.0, f64::max);
         let count = (reach * reach / spacing).ceil() as usize + 2;
-        let mut profile = Profile { sigmoids, per_spacing: 1.0 / spacing, knots: Vec::new() };
+        let mut profile = DistanceTable { sigmoids, per_spacing: 1.0 / spacing, knots: Vec::new() };
         let value = |place: usize| profile.exact(place as f64 * spacing);
         // The first knot is never asked for, being near: its neighbour below does not matter.
         let sixth = |place: usize| (value(place.max(1) - 1) + value(place + 1) - 2.0 * value(place)) / 6.0;
@@ -102,7 +102,7 @@ fn everett(t: f64, [below, above]: [[f64; 2]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::objective::lanes::WIDTH;
+    use crate::evaluation::lanes::WIDTH;
 
     #[test]
     fn the_table_equals_the_function() {
@@ -110,7 +110,7 @@ mod tests {
             let sig = |x: f64| 1.0 / (1.0 + libm::exp(-steepness * x));
             let exact = |d: f64| sig(d - 2.0) + sig(1.0 - d);
             let falling = Sigmoid { threshold: 1.0, slope: -steepness };
-            let profile = Profile::new(vec![Sigmoid { threshold: 2.0, slope: steepness }, falling]);
+            let profile = DistanceTable::new(vec![Sigmoid { threshold: 2.0, slope: steepness }, falling]);
             for i in 0..60_000 {
                 let d = f64::from(i) * 0.0005;
                 assert_eq!(profile.at_all(Lanes::splat(d * d)).0, [profile.at(d * d); WIDTH]);

@@ -1,9 +1,9 @@
 //! The baseline: an EH-GRN of fixed structure whose 13 θ are found by CMA-ES.
 
-use crate::describe;
+use crate::evaluation::{Evaluation, Evaluator, Model, World};
 use crate::evolve::front_hypervolume;
-use crate::objective::{Evaluation, Judge, Model, World};
-use crate::published::{PUBLISHED, Published};
+use crate::model::describe;
+use crate::model::published::{PUBLISHED, Published};
 use grn_core::network::{Network, THETA_RANGE};
 use grn_optimisers::bounds::Bounds;
 use grn_optimisers::cmaes::{self, Cmaes};
@@ -101,7 +101,7 @@ pub fn search(
     let bounds = Bounds::cube(dimension, low, high).ok()?;
     let settings = cmaes::Settings::new(POPULATION, SIGMA, evaluations.max(1)).ok()?.passive();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut judge = Judge::new(world);
+    let mut evaluator = Evaluator::new(world);
     let mut best: Option<Tuned> = None;
     let mut history = Vec::new();
     let mut spent = 0;
@@ -115,7 +115,7 @@ pub fn search(
         }
         let mut population = cma.ask(&mut rng);
         population.truncate(evaluations - spent);
-        let found = judge_all(structure, &mut judge, &population);
+        let found = evaluate_all(structure, &mut evaluator, &population);
         spent += population.len();
         let order = cmaes::rank(&found, Evaluation::is_as_good_as);
         let champion = order[0];
@@ -131,11 +131,11 @@ pub fn search(
 }
 
 /// The evaluation of each vector; only those of the better half are exact.
-fn judge_all(structure: Structure, judge: &mut Judge<'_>, population: &[Vec<f64>]) -> Vec<Evaluation> {
-    let level = judge.world().scenario().morphogen().level;
+fn evaluate_all(structure: Structure, evaluator: &mut Evaluator<'_>, population: &[Vec<f64>]) -> Vec<Evaluation> {
+    let level = evaluator.world().scenario().morphogen().level;
     let model = |thetas: &Vec<f64>| structure.network(thetas).and_then(|network| Model::new(&network, level).ok());
     let models: Vec<Option<Model>> = population.iter().map(model).collect();
-    judge.judge_best(&models, POPULATION / 2, None)
+    evaluator.evaluate_best(&models, POPULATION / 2, None)
 }
 
 fn progress(structure: Structure, evaluations: usize, best: &Tuned) -> Progress {
@@ -166,7 +166,7 @@ mod tests {
         assert_ne!(tuned.thetas, run(2).0.thetas);
         assert_eq!(history.last().unwrap().evaluations, 410);
         let model = Model::new(&Structure::Task2.network(&tuned.thetas).unwrap(), 0.5).unwrap();
-        assert_eq!(Judge::new(&world).judge(&model), tuned.evaluation);
+        assert_eq!(Evaluator::new(&world).evaluate(&model), tuned.evaluation);
         assert!(search(Structure::Task2, &world, 410, 1, &AtomicBool::new(true)).is_none());
     }
 }

@@ -1,11 +1,12 @@
 //! On one lattice: flood the inside component of a target, then follow its edge.
 
-use super::chart::Chart;
+use super::candidates::thinned;
+use super::corners::with_corners;
+use super::error_table::ErrorTable;
 use super::lanes::{Lanes, WIDTH};
-use super::lattice::{Direction, Edge, Medium, NodeIndex, Site};
+use super::lattice::{Direction, Edge, NodeIndex, Site};
+use super::medium::Medium;
 use super::model::Model;
-use super::ring::thinned;
-use super::sharpen::sharpened;
 use super::world::Snapshot;
 use grn_core::geometry::Point;
 use std::cmp::Reverse;
@@ -28,8 +29,8 @@ pub(super) enum Component {
 pub(super) struct View<'a> {
     pub(super) model: &'a Model,
     pub(super) snapshot: &'a Snapshot,
-    /// Where to look nodes up, if the chart is accurate enough for this model.
-    pub(super) chart: Option<&'a Chart>,
+    /// Where to look nodes up, if the table is accurate enough for this model.
+    pub(super) table: Option<&'a ErrorTable>,
 }
 
 /// A crossing of the contour: from an inside node to an outside neighbour.
@@ -116,10 +117,10 @@ impl<M: Medium> Follower<M> {
 
     #[inline(never)]
     fn find(&mut self, node: NodeIndex, view: View<'_>) -> f64 {
-        match view.chart {
-            Some(chart) if M::KEEPS_INPUTS => {
+        match view.table {
+            Some(table) if M::KEEPS_INPUTS => {
                 let [x1, x2] = self.medium.inputs_at(view.snapshot, node);
-                self.know(node, chart.at(x1, x2));
+                self.know(node, table.at(x1, x2));
             }
             _ => self.compute_run(node - node % WIDTH, view),
         }
@@ -129,7 +130,7 @@ impl<M: Medium> Follower<M> {
     #[inline(never)]
     fn compute_run(&mut self, first: NodeIndex, view: View<'_>) {
         let [x1, x2] = self.medium.inputs(view.snapshot, first);
-        let errors = view.chart.and_then(|chart| chart.sure_at(x1, x2)).unwrap_or_else(|| view.model.errors(x1, x2));
+        let errors = view.table.and_then(|table| table.sure_at(x1, x2)).unwrap_or_else(|| view.model.errors(x1, x2));
         for (lane, error) in errors.0.into_iter().enumerate() {
             self.know(first + lane, error);
         }
@@ -346,7 +347,7 @@ impl<M: Medium> Follower<M> {
             let [x1, x2] = self.medium.world().inputs_at_all(view.snapshot, points);
             view.model.errors(x1, x2)
         };
-        sharpened(ring, |point| self.medium.world().is_at_crease(point), errors)
+        with_corners(ring, |point| self.medium.world().is_at_crease(point), errors)
     }
 }
 

@@ -1,10 +1,13 @@
-//! Lattices over a world, and the inputs of a model at their nodes.
+//! Square lattices over a world: nodes, edges, neighbours.
 
-use super::lanes::{Lanes, WIDTH};
-use super::world::{Snapshot, World};
+use super::lanes::WIDTH;
 use grn_core::geometry::{Point, Vector};
 use std::ops::Range;
 
+/// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
+pub const LATTICE_STEP: f64 = 0.2;
+/// An edge of the lattice is creased if the distance to the walls in its middle is this far from the ends' mean, metres.
+const CREASE: f64 = 0.004;
 /// How far a lattice reaches beyond the scenario's region, metres. A pattern that gets there is open.
 const MARGIN: f64 = 5.0;
 
@@ -153,69 +156,7 @@ impl Site {
     }
 }
 
-/// A lattice with what models need to know at its nodes.
-pub(super) trait Medium {
-    /// Whether inputs at nodes are at hand.
-    const KEEPS_INPUTS: bool;
-    fn world(&self) -> &World;
-    fn lattice(&self) -> &Lattice;
-    /// (x1, x2) at eight nodes from `first` on, a multiple of eight.
-    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2];
-    /// (x1, x2) at one node.
-    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
-    /// Signed distance to the nearest wall, metres, negative inside.
-    fn clearance(&self, node: NodeIndex) -> f64;
-    /// What a pattern meets at a node.
-    fn site(&self, node: NodeIndex) -> Site;
-
-    /// Whether the distance to the walls is far from linear along an edge.
-    fn is_creased(&self, edge: Edge) -> bool;
-
-    /// The point at the fraction `t` of the way along an edge.
-    fn along(&self, edge: Edge, t: f64) -> Point<f64> {
-        let start = self.lattice().point(edge.from);
-        start + (self.lattice().point(edge.to) - start) * t
-    }
-
-    /// (x1, x2) at fractions of the way along eight edges. x1 is exact; x2 takes the distance to the walls as linear
-    /// along an edge, which it is beside a straight wall; other edges are
-    /// [creased](Medium::is_creased).
-    fn inputs_along(&self, snapshot: &Snapshot, edges: &[Edge; WIDTH], t: Lanes) -> [Lanes; 2] {
-        let points = std::array::from_fn(|lane| self.along(edges[lane], t.0[lane]));
-        let clearance = std::array::from_fn(|lane| {
-            let (from, to) = (self.clearance(edges[lane].from), self.clearance(edges[lane].to));
-            from + (to - from) * t.0[lane]
-        });
-        [self.world().x1_at_all(snapshot, &points), self.world().x2_at_all(Lanes(clearance))]
-    }
-}
-
-/// The world's own lattice, whose inputs are kept.
-#[derive(Clone, Copy)]
-pub(super) struct Kept<'w>(pub &'w World);
-
-impl Medium for Kept<'_> {
-    const KEEPS_INPUTS: bool = true;
-    fn world(&self) -> &World {
-        self.0
-    }
-    fn lattice(&self) -> &Lattice {
-        &self.0.lattice
-    }
-    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        [0, 1].map(|input| Lanes(std::array::from_fn(|lane| f64::from(snapshot.inputs[first + lane][input]))))
-    }
-    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
-        snapshot.inputs[node].map(f64::from)
-    }
-    fn clearance(&self, node: NodeIndex) -> f64 {
-        self.0.clearance[node]
-    }
-    fn site(&self, node: NodeIndex) -> Site {
-        self.0.sites[node]
-    }
-    fn is_creased(&self, edge: Edge) -> bool {
-        let along_rows = edge.from.abs_diff(edge.to) == 1;
-        self.0.creases[edge.from.min(edge.to)][usize::from(!along_rows)]
-    }
+/// Whether the clearance in the middle of an edge is far from what it is at the ends.
+pub(super) fn is_crease(start: f64, middle: f64, end: f64) -> bool {
+    ((start + end) * 0.5 - middle).abs() > CREASE
 }

@@ -1,18 +1,14 @@
 //! A scenario prepared for judging many models: morphogens on a lattice, which no model changes.
 
-use super::fine::FineLattice;
-use super::fitness::Terms;
+use super::fine_lattice::FineLattice;
 use super::lanes::{Lanes, WIDTH, concentration};
-use super::lattice::{Direction, Lattice, NodeIndex, Site};
+use super::lattice::{Direction, LATTICE_STEP, Lattice, NodeIndex, Site, is_crease};
+use super::terms::Terms;
 use firmware_sim::scenario::Scenario;
 use grn_core::field::Field;
 use grn_core::geometry::{Point, Vector};
 use std::sync::Arc;
 
-/// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
-pub const LATTICE_STEP: f64 = 0.2;
-/// An edge of the lattice is creased if the distance to the walls in its middle is this far from the ends' mean, metres.
-const CREASE: f64 = 0.004;
 /// Stands for "no wall near": every kernel is 0 there.
 const FAR: f64 = 1e3;
 
@@ -171,11 +167,6 @@ impl World {
             self.lattice.beside(point).is_some_and(|node| self.clearance[node] - LATTICE_STEP > distance);
         !surely_clear && self.clearance_at(point) < distance
     }
-}
-
-/// Whether the clearance in the middle of an edge is far from what it is at the ends.
-pub(super) fn is_crease(start: f64, middle: f64, end: f64) -> bool {
-    ((start + end) * 0.5 - middle).abs() > CREASE
 }
 
 fn inputs_at(world: &World, targets: &[Point<f64>], point: Point<f64>) -> [f64; 2] {

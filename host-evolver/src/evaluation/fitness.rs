@@ -1,11 +1,10 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
+use super::candidates::candidates;
+use super::distance_table::DistanceTable;
 use super::lanes::{Lanes, WIDTH};
-use super::profile::{Profile, Sigmoid};
-use super::ring::candidates;
 use super::tracer::Contours;
 use super::world::{Snapshot, World};
-use firmware_sim::scenario::Ring;
 use grn_core::geometry::Point;
 use grn_optimisers::nsga2::Scores;
 use std::cmp::Ordering;
@@ -54,34 +53,8 @@ impl Evaluation {
     }
 }
 
-/// How far off the terms may be, both tabulated and summed.
-const ROUNDING: f64 = 1e-6;
-
-/// The terms of f2 as functions of a distance.
-#[derive(Clone, Debug)]
-pub(super) struct Terms {
-    /// No snapshot's f2 is below: the terms of a point midway between d_min and d_max from every target, 2 sig(-(d_max - d_min) / 2, 0, k).
-    pub(super) least: f64,
-    /// sig(d, d_max, k1) + sig(d_min, d, k2).
-    target: Profile,
-    /// sig(d_obstacle, d, k3).
-    obstacle: Profile,
-}
-
-impl Terms {
-    pub(super) fn of(ring: Ring) -> Terms {
-        let rising = |threshold: f64| Sigmoid { threshold, slope: ring.steepness };
-        let falling = |threshold: f64| Sigmoid { threshold, slope: -ring.steepness };
-        Terms {
-            least: 2.0 * rising(ring.d_max).at((ring.d_min + ring.d_max) / 2.0) - ROUNDING,
-            target: Profile::new(vec![rising(ring.d_max), falling(ring.d_min)]),
-            obstacle: Profile::new(vec![falling(ring.d_obstacle)]),
-        }
-    }
-}
-
 /// What a pattern is worth at a moment.
-pub(super) fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+pub(super) fn evaluate_snapshot(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
     let lost = lost / snapshot.targets.len() as f64;
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
@@ -102,7 +75,7 @@ pub(super) fn judge_moment(world: &World, snapshot: &Snapshot, contours: &Contou
 }
 
 /// The sum of a term over all pairs of sources and points.
-fn sum_over(sources: &[Point<f64>], points: &[Point<f64>], term: &Profile) -> f64 {
+fn sum_over(sources: &[Point<f64>], points: &[Point<f64>], term: &DistanceTable) -> f64 {
     let squared = |source: Point<f64>, point: Point<f64>| (point - source).dot(point - source);
     let (eights, rest) = points.as_chunks::<WIDTH>();
     let mut sums = Lanes::splat(0.0);

@@ -112,8 +112,8 @@ impl Arithmetic for Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::objective::Model;
-    use crate::published::PUBLISHED;
+    use crate::evaluation::Model;
+    use crate::model::published::PUBLISHED;
     use grn_core::scalar::Scalar;
 
     #[test]

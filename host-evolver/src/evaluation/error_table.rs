@@ -3,18 +3,18 @@
 use super::lanes::{Lanes, WIDTH};
 use super::model::Model;
 
-/// Divisions of the unit interval of x1 and x2 on the coarsest chart; x1 runs from 0 to the number of targets.
+/// Divisions of the unit interval of x1 and x2 on the coarsest table; x1 runs from 0 to the number of targets.
 const X1_DIVISIONS: usize = 32;
 const X2_DIVISIONS: usize = 16;
-/// How many times finer a chart may be.
+/// How many times finer a table may be.
 const FINENESS: [usize; 2] = [1, 2];
 
-/// A chart's accuracy is an estimate: a sign is certain this many times farther from zero.
+/// A table's accuracy is an estimate: a sign is certain this many times farther from zero.
 const MARGIN: f64 = 1.5;
 
 /// φ at a grid of (x1, x2), between which it is interpolated linearly.
 #[derive(Clone, Debug)]
-pub(super) struct Chart {
+pub(super) struct ErrorTable {
     /// Divisions of the unit interval of x1 and x2.
     divisions: [f64; 2],
     columns: usize,
@@ -22,14 +22,14 @@ pub(super) struct Chart {
     accuracy: f64,
 }
 
-impl Chart {
-    /// The chart of a model for x1 up to `targets`, so fine that it is off by less than `tolerance`, if that is possible.
-    pub(super) fn of(model: &Model, targets: usize, tolerance: f64) -> Option<Chart> {
-        let mut charts = FINENESS.into_iter().map(|fineness| Chart::drawn(fineness, model, targets));
-        charts.find(|chart| chart.accuracy < tolerance)
+impl ErrorTable {
+    /// The table of a model for x1 up to `targets`, so fine that it is off by less than `tolerance`, if that is possible.
+    pub(super) fn of(model: &Model, targets: usize, tolerance: f64) -> Option<ErrorTable> {
+        let mut tables = FINENESS.into_iter().map(|fineness| ErrorTable::drawn(fineness, model, targets));
+        tables.find(|table| table.accuracy < tolerance)
     }
 
-    fn drawn(fineness: usize, model: &Model, targets: usize) -> Chart {
+    fn drawn(fineness: usize, model: &Model, targets: usize) -> ErrorTable {
         let (x1_divisions, x2_divisions) = (X1_DIVISIONS * fineness, X2_DIVISIONS * fineness);
         let divisions = [x1_divisions as f64, x2_divisions as f64];
         let [per_x1, per_x2] = divisions.map(|divisions| 1.0 / divisions);
@@ -43,9 +43,9 @@ impl Chart {
                 errors.extend(model.errors(x1, x2).0);
             }
         }
-        let mut chart = Chart { divisions, columns, errors, accuracy: 0.0 };
-        chart.accuracy = chart.largest_second_difference() / 8.0;
-        chart
+        let mut table = ErrorTable { divisions, columns, errors, accuracy: 0.0 };
+        table.accuracy = table.largest_second_difference() / 8.0;
+        table
     }
 
     fn largest_second_difference(&self) -> f64 {
@@ -83,18 +83,18 @@ impl Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::PUBLISHED;
+    use crate::model::published::PUBLISHED;
 
     #[test]
     fn the_chart_keeps_its_promised_accuracy() {
         for published in &PUBLISHED {
             let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
-            let chart = Chart::of(&model, 2, 0.005).unwrap_or_else(|| panic!("{}", published.name));
+            let table = ErrorTable::of(&model, 2, 0.005).unwrap_or_else(|| panic!("{}", published.name));
             for i in 0..=200 {
                 for j in 0..=100 {
                     let (x1, x2) = (f64::from(i) * 0.01, f64::from(j) * 0.01);
-                    let error = (chart.at(x1, x2) - model.error(x1, x2)).abs();
-                    assert!(error <= 1.1 * chart.accuracy, "{}: off by {error}", published.name);
+                    let error = (table.at(x1, x2) - model.error(x1, x2)).abs();
+                    assert!(error <= 1.1 * table.accuracy, "{}: off by {error}", published.name);
                 }
             }
         }

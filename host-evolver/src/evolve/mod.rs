@@ -3,22 +3,26 @@
 //! Every individual has a stream of random numbers of its own, named by (run seed, generation, place), so the result
 //! does not depend on threads, and an interrupted run goes on from its last whole generation to the same end.
 
+pub mod eh_grn;
+mod individual;
+pub mod objective;
 mod settings;
 #[cfg(test)]
 mod tests;
 
+pub use individual::Individual;
 pub use settings::{DeSettings, Settings, SettingsError};
 
-use crate::objective::{Evaluation, Judge, Model, World};
-use crate::objectives::{Nodes, Objective, RingError};
-use crate::tree::Tree;
-use crate::variation::{Grammar, Variation};
+use crate::evaluation::{Evaluation, Evaluator, Model, World};
+use crate::model::tree::Tree;
+use crate::model::variation::{Grammar, Variation};
 use grn_core::network::THETA_RANGE;
 use grn_optimisers::bounds::Bounds;
 use grn_optimisers::de::{self, Wanted};
 use grn_optimisers::hypervolume::hypervolume;
 use grn_optimisers::knee;
 use grn_optimisers::nsga2::{self, Scores, Standing};
+use objective::{Nodes, Objective, RingError, scores};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -30,38 +34,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A tree whose structure its generation already has is drawn again at most so often.
 const REDRAWS: usize = 20;
-
-/// A tuned tree and what it is worth.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Individual {
-    /// The tree with its θ.
-    pub tree: Tree,
-    /// f2 in [0, 2].
-    pub f2: f64,
-    /// Constraint violation, 0 for a feasible model.
-    pub violation: f64,
-}
-
-impl Individual {
-    fn new(tree: Tree, evaluation: Evaluation) -> Self {
-        Individual { tree, f2: evaluation.f2, violation: evaluation.violation }
-    }
-
-    /// (f1, f2): how many nodes, and the ring error.
-    pub fn point(&self) -> [f64; 2] {
-        [self.tree.size() as f64, self.f2]
-    }
-
-    /// The objectives' values and the violation, for Deb's rule.
-    pub fn scores<const M: usize>(&self, objectives: &[&dyn Objective; M]) -> Scores<M> {
-        Scores { objectives: objectives.map(|objective| objective.value(self)), violation: self.violation }
-    }
-
-    /// Whether it encloses every target everywhere without coming too close to a wall.
-    pub fn is_feasible(&self) -> bool {
-        self.violation == 0.0
-    }
-}
 
 /// The state between two generations: all that a run needs to go on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -124,7 +96,7 @@ pub struct Search<'w, const M: usize = 2> {
     de: de::Settings,
     state: State,
     /// Idle ones, kept for their working memory and for what they know of the world's hard moments.
-    judges: Mutex<Vec<Judge<'w>>>,
+    evaluators: Mutex<Vec<Evaluator<'w>>>,
 }
 
 impl<'w> Search<'w> {
@@ -154,12 +126,12 @@ impl<'w, const M: usize> Search<'w, M> {
         settings.check()?;
         let de = settings.differential_evolution()?;
         let fresh = State { generation: 0, evaluations: 0, population: Vec::new(), history: Vec::new() };
-        let (state, judges) = (state.unwrap_or(fresh), Mutex::new(Vec::new()));
-        Ok(Search { world, settings, objectives, variation, de, state, judges })
+        let (state, evaluators) = (state.unwrap_or(fresh), Mutex::new(Vec::new()));
+        Ok(Search { world, settings, objectives, variation, de, state, evaluators })
     }
 
-    fn judges(&self) -> MutexGuard<'_, Vec<Judge<'w>>> {
-        self.judges.lock().unwrap_or_else(PoisonError::into_inner)
+    fn evaluators(&self) -> MutexGuard<'_, Vec<Evaluator<'w>>> {
+        self.evaluators.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The state after the last whole generation.
@@ -184,9 +156,9 @@ impl<'w, const M: usize> Search<'w, M> {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
-            let mut judge = self.judges().pop().unwrap_or_else(|| Judge::new(self.world));
-            let individual = self.tune(&mut judge, &tree, &mut rng);
-            self.judges().push(judge);
+            let mut evaluator = self.evaluators().pop().unwrap_or_else(|| Evaluator::new(self.world));
+            let individual = self.tune(&mut evaluator, &tree, &mut rng);
+            self.evaluators().push(evaluator);
             tuned(&individual);
             Some(individual)
         };
@@ -228,7 +200,7 @@ impl<'w, const M: usize> Search<'w, M> {
     }
 
     fn scores(&self, individuals: &[Individual]) -> Vec<Scores<M>> {
-        individuals.iter().map(|individual| individual.scores(&self.objectives)).collect()
+        individuals.iter().map(|individual| scores(individual, &self.objectives)).collect()
     }
 
     fn offspring(&self, standings: &[Standing], rng: &mut ChaCha8Rng) -> Tree {
@@ -243,17 +215,17 @@ impl<'w, const M: usize> Search<'w, M> {
     }
 
     /// DE over θ, starting from the θ the tree has inherited; fitness is f2 under Deb's rule.
-    fn tune(&self, judge: &mut Judge<'w>, tree: &Tree, rng: &mut ChaCha8Rng) -> Individual {
+    fn tune(&self, evaluator: &mut Evaluator<'w>, tree: &Tree, rng: &mut ChaCha8Rng) -> Individual {
         let inherited = tree.thetas();
         let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
         let evaluate = |vectors: &[Vec<f64>], wanted: Wanted<'_, Evaluation>| {
-            let model = |thetas: &Vec<f64>| judge.model_of(&tree.with_thetas(thetas), self.settings.steepness);
+            let model = |thetas: &Vec<f64>| evaluator.model_of(&tree.with_thetas(thetas), self.settings.steepness);
             let models: Vec<Option<Model>> = vectors.iter().map(model).collect();
             match wanted {
-                Wanted::All => judge.judge_best(&models, models.len(), None),
-                Wanted::Best(rival) => judge.judge_best(&models, 1, rival),
+                Wanted::All => evaluator.evaluate_best(&models, models.len(), None),
+                Wanted::Best(rival) => evaluator.evaluate_best(&models, 1, rival),
                 Wanted::Winners(rivals) => {
-                    let one = |(model, rival)| judge.judge_best(std::slice::from_ref(model), 1, Some(rival))[0];
+                    let one = |(model, rival)| evaluator.evaluate_best(std::slice::from_ref(model), 1, Some(rival))[0];
                     models.iter().zip(rivals).map(one).collect()
                 }
             }
@@ -285,7 +257,7 @@ impl<'w, const M: usize> Search<'w, M> {
         let mut front: Vec<&Individual> =
             nsga2::non_dominated(&self.scores(population)).into_iter().map(|place| &population[place]).collect();
         front.sort_by(|a, b| a.tree.size().cmp(&b.tree.size()).then(a.f2.total_cmp(&b.f2)));
-        front.dedup_by_key(|individual| individual.scores(&self.objectives).objectives.map(f64::to_bits));
+        front.dedup_by_key(|individual| scores(individual, &self.objectives).objectives.map(f64::to_bits));
         let points: Vec<[f64; 2]> = front.iter().map(|individual| individual.point()).collect();
         let by_angle = knee::knee_by_angle(&points, knee::Neighbours::Nearest);
         let by_utility = knee::knee_by_utility(&points);
@@ -304,7 +276,7 @@ impl<'w, const M: usize> Search<'w, M> {
             match places.get(&individual.tree.structure()) {
                 Some(&place) => {
                     let standing: &mut Individual = &mut unique[place];
-                    if individual.scores(&self.objectives).dominates(&standing.scores(&self.objectives)) {
+                    if scores(&individual, &self.objectives).dominates(&scores(standing, &self.objectives)) {
                         *standing = individual;
                     }
                 }

@@ -1,28 +1,28 @@
 //! Judging models: no more than it takes to see who wins.
 
-use super::chart::Chart;
 use super::contour::View;
-use super::fitness::{Evaluation, WORST_F2, judge_moment};
+use super::error_table::ErrorTable;
+use super::fitness::{Evaluation, WORST_F2, evaluate_snapshot};
 use super::model::Model;
-use super::tracer::{Tracer, chart_of};
+use super::tracer::{Tracer, error_table_of};
 use super::world::{Snapshot, World};
-use crate::tree::Tree;
+use crate::model::tree::Tree;
 
 /// Judges models in one world; one per thread.
 ///
 /// Moments at which recent models did badly come first, so that a model that loses does so soon. What a model is worth
 /// does not depend on it: values are summed in the order of time.
-pub struct Judge<'w> {
+pub struct Evaluator<'w> {
     world: &'w World,
     tracer: Tracer<'w>,
     /// How badly models have done of late at each moment.
     hardness: Vec<f64>,
 }
 
-impl<'w> Judge<'w> {
-    /// A judge for `world`.
+impl<'w> Evaluator<'w> {
+    /// A evaluator for `world`.
     pub fn new(world: &'w World) -> Self {
-        Judge { world, tracer: Tracer::new(world), hardness: vec![0.0; world.snapshots().len()] }
+        Evaluator { world, tracer: Tracer::new(world), hardness: vec![0.0; world.snapshots().len()] }
     }
 
     /// The world models are judged in.
@@ -37,7 +37,7 @@ impl<'w> Judge<'w> {
     }
 
     /// Evaluates a model over all snapshots.
-    pub fn judge(&mut self, model: &Model) -> Evaluation {
+    pub fn evaluate(&mut self, model: &Model) -> Evaluation {
         let mut case = Case::new(model, self);
         while !case.is_closed() {
             case.look_on(self);
@@ -51,7 +51,12 @@ impl<'w> Judge<'w> {
     ///
     /// The model that is best as far as is known is looked at next, so the others get no more attention than it takes
     /// to see that they are worse.
-    pub fn judge_best(&mut self, models: &[Option<Model>], kept: usize, rival: Option<&Evaluation>) -> Vec<Evaluation> {
+    pub fn evaluate_best(
+        &mut self,
+        models: &[Option<Model>],
+        kept: usize,
+        rival: Option<&Evaluation>,
+    ) -> Vec<Evaluation> {
         let mut cases: Vec<Case<'_>> = models.iter().flatten().map(|model| Case::new(model, self)).collect();
         let mut running: Vec<usize> = (0..cases.len()).collect();
         let mut found = 0;
@@ -93,7 +98,7 @@ const LOST_AS_A_RULE: f64 = (WORST_F2 + VIOLATION_WEIGHT) / 2.0;
 /// What is known so far of a model.
 struct Case<'m> {
     model: &'m Model,
-    chart: Option<Option<Chart>>,
+    table: Option<Option<ErrorTable>>,
     /// What the model is worth at each moment, as far as it is known.
     moments: Vec<Option<Evaluation>>,
     /// Moments to look at.
@@ -105,15 +110,15 @@ struct Case<'m> {
 }
 
 impl<'m> Case<'m> {
-    /// Looks only whether targets are inside: no chart is needed for a moment at which none is.
-    fn new(model: &'m Model, judge: &Judge<'_>) -> Self {
+    /// Looks only whether targets are inside: no table is needed for a moment at which none is.
+    fn new(model: &'m Model, evaluator: &Evaluator<'_>) -> Self {
         let is_lost = |snapshot: &Snapshot| snapshot.target_inputs.iter().all(|&[x1, x2]| model.error(x1, x2) < 0.0);
         let lost = |snapshot| is_lost(snapshot).then_some(Evaluation::NO_PATTERN);
-        let moments: Vec<_> = judge.world.snapshots().iter().map(lost).collect();
+        let moments: Vec<_> = evaluator.world.snapshots().iter().map(lost).collect();
         let ahead = (0..moments.len()).filter(|&place| moments[place].is_none()).collect();
         let mut case =
-            Case { model, chart: None, moments, ahead, doubtful: Vec::new(), at_best: Evaluation::NO_PATTERN };
-        case.sum_up(judge.world);
+            Case { model, table: None, moments, ahead, doubtful: Vec::new(), at_best: Evaluation::NO_PATTERN };
+        case.sum_up(evaluator.world);
         case
     }
 
@@ -122,25 +127,25 @@ impl<'m> Case<'m> {
     }
 
     /// Looks at one more moment.
-    fn look_on(&mut self, judge: &mut Judge<'_>) {
-        let world = judge.world;
-        let chart = self.chart.get_or_insert_with(|| chart_of(world, self.model)).as_ref();
-        let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], chart };
-        let hardness = |&ahead: &usize| judge.hardness[self.ahead[ahead]];
+    fn look_on(&mut self, evaluator: &mut Evaluator<'_>) {
+        let world = evaluator.world;
+        let table = self.table.get_or_insert_with(|| error_table_of(world, self.model)).as_ref();
+        let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], table };
+        let hardness = |&ahead: &usize| evaluator.hardness[self.ahead[ahead]];
         let hardest = (0..self.ahead.len()).max_by(|a, b| hardness(a).total_cmp(&hardness(b)));
         let (place, contours) = if let Some(hardest) = hardest {
             let place = self.ahead.swap_remove(hardest);
-            let Some(contours) = judge.tracer.trace(view(place), judge.hardness[place] > LOST_AS_A_RULE) else {
+            let Some(contours) = evaluator.tracer.trace(view(place), evaluator.hardness[place] > LOST_AS_A_RULE) else {
                 return self.doubtful.push(place);
             };
             (place, contours)
         } else if let Some(place) = self.doubtful.pop() {
-            (place, judge.tracer.trace_finely(view(place)))
+            (place, evaluator.tracer.trace_finely(view(place)))
         } else {
             return;
         };
-        let moment = judge_moment(world, &world.snapshots()[place], &contours);
-        judge.learn(place, moment);
+        let moment = evaluate_snapshot(world, &world.snapshots()[place], &contours);
+        evaluator.learn(place, moment);
         self.moments[place] = Some(moment);
         self.sum_up(world);
     }
@@ -160,7 +165,7 @@ impl<'m> Case<'m> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::PUBLISHED;
+    use crate::model::published::PUBLISHED;
     use firmware_sim::scenario::Scenario;
 
     fn world(name: &str) -> World {
@@ -172,20 +177,20 @@ mod tests {
     fn the_best_get_their_values_and_the_others_no_better_than_theirs() {
         for name in ["channel", "compound-channel", "channel-two-targets"] {
             let world = world(name);
-            let mut judge = Judge::new(&world);
+            let mut evaluator = Evaluator::new(&world);
             let mut models = vec![None];
             for published in &PUBLISHED {
                 for level in [0.4, 0.5, 0.6] {
                     models.push(Model::new(&published.network().unwrap(), level).ok());
                 }
             }
-            let value = |model: &Option<Model>| model.as_ref().map(|model| Judge::new(&world).judge(model));
+            let value = |model: &Option<Model>| model.as_ref().map(|model| Evaluator::new(&world).evaluate(model));
             let values: Vec<_> = models.iter().map(|model| value(model).unwrap_or(Evaluation::NO_PATTERN)).collect();
             let mut order: Vec<usize> = (0..values.len()).collect();
             order.sort_by(|&a, &b| values[a].order(&values[b]));
             let rival = values[order[2]];
             for (kept, rival) in [(1, None), (5, None), (values.len(), None), (5, Some(&rival))] {
-                let found = judge.judge_best(&models, kept, rival);
+                let found = evaluator.evaluate_best(&models, kept, rival);
                 let exact = if rival.is_some() { 3 } else { kept };
                 for (rank, &place) in order.iter().enumerate() {
                     let (found, worst) = (found[place], values[order[exact - 1]]);
@@ -205,14 +210,14 @@ mod tests {
     #[test]
     fn no_model_is_worth_more_than_at_best() {
         let world = world("compound-channel");
-        let mut judge = Judge::new(&world);
+        let mut evaluator = Evaluator::new(&world);
         for published in &PUBLISHED {
             let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
-            let value = judge.judge(&model);
-            let mut case = Case::new(&model, &judge);
+            let value = evaluator.evaluate(&model);
+            let mut case = Case::new(&model, &evaluator);
             while !case.is_closed() {
                 let before = case.at_best;
-                case.look_on(&mut judge);
+                case.look_on(&mut evaluator);
                 assert!(
                     before.is_as_good_as(&case.at_best) && case.at_best.is_as_good_as(&value),
                     "{}",

@@ -18,7 +18,7 @@ const DEEPEST: u32 = 4;
 const LOOKED_AT: [f64; WIDTH] = [0.0, 0.1, -0.1, 0.3, -0.3, 1.0, -1.0, 2.0];
 
 /// The ring, inside to its right, with more points where it turns sharply; `errors` is the exact pattern error.
-pub(super) fn sharpened(
+pub(super) fn with_corners(
     ring: Vec<Point<f64>>,
     is_at_crease: impl Fn(Point<f64>) -> bool,
     errors: impl Fn(&[Point<f64>; WIDTH]) -> Lanes,
@@ -173,7 +173,7 @@ mod tests {
             })
             .collect();
         ring.reverse();
-        let sharp = sharpened(ring, |_| false, |points| Lanes(points.map(|p| 1.0 - p.x.abs() - p.y.abs())));
+        let sharp = with_corners(ring, |_| false, |points| Lanes(points.map(|p| 1.0 - p.x.abs() - p.y.abs())));
         let off = |corner: Point<f64>| sharp.iter().map(|&p| (p - corner).length()).fold(f64::INFINITY, f64::min);
         for corner in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)] {
             assert!(off(corner) < 0.01, "{} m from a corner", off(corner));
@@ -182,6 +182,6 @@ mod tests {
             .map(|i| f64::from(i) * std::f64::consts::TAU / 60.0)
             .map(|angle| Vector::new(1.5 * libm::cos(angle), 1.5 * libm::sin(angle)))
             .collect();
-        assert_eq!(sharpened(circle.clone(), |_| false, |_| unreachable!("no corner to look into")), circle);
+        assert_eq!(with_corners(circle.clone(), |_| false, |_| unreachable!("no corner to look into")), circle);
     }
 }

@@ -4,9 +4,9 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use firmware_sim::scenario::Scenario;
 use grn_core::geometry::Vector;
+use host_evolver::evaluation::{Evaluator, Model, World};
 use host_evolver::evolve::{Advance, Search, Settings};
-use host_evolver::objective::{Judge, Model, World};
-use host_evolver::published::PUBLISHED;
+use host_evolver::model::published::PUBLISHED;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -54,14 +54,14 @@ fn time_of(times: u32, mut work: impl FnMut()) -> Duration {
 
 /// One run that measures both ways in turn and prints their ratio.
 fn ratio(world: &World) {
-    let mut judge = Judge::new(world);
+    let mut judge = Evaluator::new(world);
     for (index, published) in PUBLISHED.iter().enumerate() {
         let model = model(index);
-        let fast_f2 = judge.judge(&model).f2;
+        let fast_f2 = judge.evaluate(&model).f2;
         let mut plain_f2 = 0.0;
         let plain = time_of(2, || plain_f2 = f2_plain(world, &model));
         let fast = time_of(400, || {
-            black_box(judge.judge(black_box(&model)));
+            black_box(judge.evaluate(black_box(&model)));
         });
         let ratio = plain.as_secs_f64() / fast.as_secs_f64();
         println!(
@@ -80,8 +80,8 @@ fn objective(c: &mut Criterion) {
     let world = channel();
     ratio(&world);
     let model = model(1);
-    let mut judge = Judge::new(&world);
-    c.bench_function("f2 fast", |b| b.iter(|| judge.judge(black_box(&model))));
+    let mut judge = Evaluator::new(&world);
+    c.bench_function("f2 fast", |b| b.iter(|| judge.evaluate(black_box(&model))));
     let mut group = c.benchmark_group("slow");
     group.sample_size(10);
     group.bench_function("f2 plain", |b| b.iter(|| f2_plain(&world, black_box(&model))));

@@ -131,7 +131,7 @@ pub fn graph(network: &Network<f32>) -> Vec<grn_figures::Gene> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::published::PUBLISHED;
+    use crate::model::published::PUBLISHED;
 
     #[test]
     fn equations_read_as_in_the_paper() {

@@ -1,7 +1,8 @@
 //! What the search minimises. A further objective is a type that implements [`Objective`], given to
 //! [`Search::with`](crate::evolve::Search::with).
 
-use crate::evolve::Individual;
+use super::individual::Individual;
+use grn_optimisers::nsga2::Scores;
 
 /// Something to be minimised. It is asked for several times an individual, so one that costs much should remember.
 pub trait Objective: Sync {
@@ -33,4 +34,9 @@ impl Objective for RingError {
     fn value(&self, individual: &Individual) -> f64 {
         individual.f2
     }
+}
+
+/// The objectives' values of an individual and its violation, for Deb's rule.
+pub fn scores<const M: usize>(individual: &Individual, objectives: &[&dyn Objective; M]) -> Scores<M> {
+    Scores { objectives: objectives.map(|objective| objective.value(individual)), violation: individual.violation }
 }

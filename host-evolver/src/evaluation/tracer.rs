@@ -1,9 +1,9 @@
 //! From a model and a moment to the pattern (model page, section 3).
 
-use super::chart::Chart;
 use super::contour::{Component, Follower, View};
-use super::fine::Computed;
-use super::lattice::{Kept, Medium, NodeIndex};
+use super::error_table::ErrorTable;
+use super::lattice::NodeIndex;
+use super::medium::{Computed, Kept, Medium};
 use super::model::Model;
 use super::world::{Snapshot, World};
 use grn_core::geometry::Point;
@@ -14,7 +14,7 @@ const DOUBT: f64 = 0.02;
 /// So many nodes are looked at for a leak that is expected, before the pattern is taken to be closed: enough to get to a
 /// wall on either lattice.
 const LOOKED_AT_FOR_LEAKS: usize = 200;
-/// How far off a chart may be for models to be traced by it.
+/// How far off a table may be for models to be traced by it.
 const CHART_TOLERANCE: f64 = DOUBT / 4.0;
 
 /// The pattern of one model at one moment.
@@ -49,9 +49,9 @@ impl<'w> Tracer<'w> {
 
     /// The patterns of `model` at each snapshot of the world, in turn.
     pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
-        let chart = chart_of(self.world, model);
+        let table = error_table_of(self.world, model);
         self.world.snapshots().iter().map(move |snapshot| {
-            let view = View { model, snapshot, chart: chart.as_ref() };
+            let view = View { model, snapshot, table: table.as_ref() };
             (snapshot, self.trace(view, false).unwrap_or_else(|| self.trace_finely(view)))
         })
     }
@@ -74,9 +74,9 @@ impl<'w> Tracer<'w> {
     }
 }
 
-/// What models are traced by in a world, unless a chart cannot be accurate enough.
-pub(super) fn chart_of(world: &World, model: &Model) -> Option<Chart> {
-    Chart::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
+/// What models are traced by in a world, unless a table cannot be accurate enough.
+pub(super) fn error_table_of(world: &World, model: &Model) -> Option<ErrorTable> {
+    ErrorTable::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
 }
 
 /// What becomes of a target's component; `Closed` says which component it is.

@@ -31,7 +31,7 @@ fn f2_plain(world: &World, model: &Model) -> f64 {
     let area = [Vector::new(0.0, 0.0), Vector::new(width, height)];
     let moments = world.snapshots().iter().map(|snapshot| {
         let pattern = plain::trace(world, model, snapshot, area, PLAIN_STEP);
-        plain::judge(world, snapshot, &pattern)[0]
+        plain::evaluate(world, snapshot, &pattern)[0]
     });
     moments.sum::<f64>() / world.snapshots().len() as f64
 }
@@ -54,14 +54,14 @@ fn time_of(times: u32, mut work: impl FnMut()) -> Duration {
 
 /// One run that measures both ways in turn and prints their ratio.
 fn ratio(world: &World) {
-    let mut judge = Evaluator::new(world);
+    let mut evaluator = Evaluator::new(world);
     for (index, published) in PUBLISHED.iter().enumerate() {
         let model = model(index);
-        let fast_f2 = judge.evaluate(&model).f2;
+        let fast_f2 = evaluator.evaluate(&model).f2;
         let mut plain_f2 = 0.0;
         let plain = time_of(2, || plain_f2 = f2_plain(world, &model));
         let fast = time_of(400, || {
-            black_box(judge.evaluate(black_box(&model)));
+            black_box(evaluator.evaluate(black_box(&model)));
         });
         let ratio = plain.as_secs_f64() / fast.as_secs_f64();
         println!(
@@ -80,8 +80,8 @@ fn objective(c: &mut Criterion) {
     let world = channel();
     ratio(&world);
     let model = model(1);
-    let mut judge = Evaluator::new(&world);
-    c.bench_function("f2 fast", |b| b.iter(|| judge.evaluate(black_box(&model))));
+    let mut evaluator = Evaluator::new(&world);
+    c.bench_function("f2 fast", |b| b.iter(|| evaluator.evaluate(black_box(&model))));
     let mut group = c.benchmark_group("slow");
     group.sample_size(10);
     group.bench_function("f2 plain", |b| b.iter(|| f2_plain(&world, black_box(&model))));

@@ -89,7 +89,7 @@ fn fast_contours_are_the_plain_ones() {
                     continue;
                 };
                 finer += usize::from(level > 0);
-                f2 += plain::judge(world, snapshot, &plain)[0];
+                f2 += plain::evaluate(world, snapshot, &plain)[0];
                 let apart = farthest(&fast.rings, &plain.rings).max(farthest(&plain.rings, &fast.rings));
                 if apart > allowed(world, name) {
                     faults.push(format!("{place}: {apart:.4} m apart"));

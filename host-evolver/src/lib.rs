@@ -17,6 +17,7 @@ pub mod published;
 pub mod report;
 pub mod run;
 pub mod search;
+pub mod sectors;
 pub mod simulation;
 pub mod slot_file;
 pub mod statistics;

@@ -10,5 +10,6 @@ pub mod figures;
 pub mod files;
 pub mod model;
 pub mod run;
+pub mod sectors;
 pub mod simulation;
 pub mod slot_file;

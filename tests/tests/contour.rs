@@ -114,8 +114,8 @@ fn an_evaluation_depends_on_nothing_but_the_model() {
         let mut kept = Evaluator::new(world);
         let forward: Vec<_> = models.iter().map(|(_, model)| kept.evaluate(model)).collect();
         for (place, (name, model)) in models.iter().enumerate().rev() {
-            assert_eq!(kept.evaluate(model), forward[place], "{name} judged again");
-            assert_eq!(Evaluator::new(world).evaluate(model), forward[place], "{name} judged afresh");
+            assert_eq!(kept.evaluate(model), forward[place], "{name} evaluated again");
+            assert_eq!(Evaluator::new(world).evaluate(model), forward[place], "{name} evaluated afresh");
         }
     }
 }

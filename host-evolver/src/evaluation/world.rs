@@ -108,7 +108,7 @@ impl World {
         &self.field
     }
 
-    /// The moments models are judged at.
+    /// The moments models are evaluated at.
     pub fn snapshots(&self) -> &[Snapshot] {
         &self.snapshots
     }

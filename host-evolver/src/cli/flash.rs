@@ -1,15 +1,8 @@
 //! `grn flash`.
 
 use super::{Answer, Failure, about, print};
-<<<<<<< HEAD
-use crate::slot_file::{DEFAULT_ADDRESS, SlotFile};
-=======
-use crate::port::Port;
 use crate::sectors::Sector;
 use crate::slot_file::SlotFile;
-use firmware_sim::link::flashing::{self, Flashed, Progress};
-use firmware_sim::link::{Client, Patience};
->>>>>>> main
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::MAX_WIRE;
 use grn_core::robot::link::message::{About, MAX_CHUNK, encode_request};

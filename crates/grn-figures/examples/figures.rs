@@ -12,8 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     save(&directory, "pareto", pareto(&population(), "", Some(&reference))?)?;
     let narrow: Vec<ParetoPoint> = population().into_iter().filter(|p| p.f2 < 0.06).collect();
     save(&directory, "pareto-linear", pareto(&narrow, "Compound channel", None)?)?;
-    save(&directory, "tree", tree(&nand_xnor())?)?;
-    save(&directory, "tree-large", tree(&full(4))?)?;
+    save(&directory, "tree", tree(&nand_xnor()))?;
+    save(&directory, "tree-large", tree(&full(4)))?;
     save(&directory, "grn", grn(&two_genes())?)?;
     save(&directory, "grn-three", grn(&three_genes())?)?;
     save(&directory, "grn-eh", grn(&eh_grn())?)?;
@@ -25,20 +25,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     square.window = Window { min: [0.0, 0.0], max: [20.0, 20.0] };
     save(&directory, "trace-square", trace(&square)?)?;
     save(&directory, "trace-two", trace(&run(&[2.5, 4.5], 5.0))?)?;
-    save(&directory, "boxes", boxes(&campaign(6, &METHODS))?)?;
-    save(&directory, "boxes-one", boxes(&campaign(1, &METHODS[..4]))?)?;
-    save(&directory, "boxes-many", boxes(&campaign(1, &[METHODS, METHODS].concat()))?)?;
+    save_pages(&directory, "boxes", boxes(&campaign(6, &METHODS))?)?;
+    save_pages(&directory, "boxes-one", boxes(&campaign(1, &METHODS[..4]))?)?;
+    save_pages(&directory, "boxes-many", boxes(&campaign(1, &[METHODS, METHODS].concat()))?)?;
     let long = ["Differential evolution", "Reimplementation", "CMA-ES"];
-    save(&directory, "boxes-upright", boxes(&campaign(1, &long.repeat(4)))?)?;
-    save(&directory, "convergence", convergence(&histories(3, &METHODS))?)?;
-    save(&directory, "convergence-one", convergence(&histories(1, &METHODS[..3]))?)?;
-    save(&directory, "rates", rates(&successes(3, &METHODS))?)?;
-    save(&directory, "rates-one", rates(&successes(1, &METHODS[..3]))?)?;
+    save_pages(&directory, "boxes-upright", boxes(&campaign(1, &long.repeat(4)))?)?;
+    save_pages(&directory, "convergence", convergence(&histories(3, &METHODS))?)?;
+    save_pages(&directory, "convergence-one", convergence(&histories(1, &METHODS[..3]))?)?;
+    save_pages(&directory, "rates", rates(&successes(3, &METHODS))?)?;
+    save_pages(&directory, "rates-one", rates(&successes(1, &METHODS[..3]))?)?;
     Ok(())
 }
 
 fn save(directory: &Path, name: &str, svg: String) -> std::io::Result<()> {
     std::fs::write(directory.join(name).with_extension("svg"), svg)
+}
+
+fn save_pages(directory: &Path, name: &str, pages: Vec<String>) -> std::io::Result<()> {
+    for (page, svg) in pages.into_iter().enumerate() {
+        save(directory, &if page == 0 { name.to_owned() } else { format!("{name}-{}", page + 1) }, svg)?;
+    }
+    Ok(())
 }
 
 /// Numbers from 0 to 1 that look random and are the same every time.
@@ -212,7 +219,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         };
         times.iter().enumerate().map(value).collect::<Vec<f64>>()
     };
-    let error = |(i, t): (usize, &f64)| 0.9 * libm::exp(-t / 9.0) + 0.05 + 0.03 * noise(7000 + i as u64);
+    let error = |(i, t): (usize, &f64)| Some(0.9 * libm::exp(-t / 9.0) + 0.05 + 0.03 * noise(7000 + i as u64));
     TraceFigure {
         window: Window { min: [0.0, 4.5], max: [20.0, 15.5] },
         walls: walls(),
@@ -222,7 +229,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         instants: (0..=instants as i32).map(instant).collect(),
         gaps: (0..starts.len()).map(gap).collect(),
         radial_error: times.iter().enumerate().map(error).collect(),
-        radial_band: 0.16,
+        radial_band: Some(0.16),
         times,
     }
 }
@@ -271,7 +278,7 @@ fn histories(panels: usize, methods: &[&str]) -> ConvergenceFigure {
 fn successes(groups: usize, methods: &[&str]) -> RatesFigure {
     let row = |i: usize, j: usize| {
         let count = (30.0 * noise((10 * i + j) as u64).max(0.2 * (4 - j) as f64)) as usize;
-        RateRow { label: methods[j].into(), rate: count as f64 / 30.0, interval: wilson(count, 30) }
+        RateRow { label: methods[j].into(), successes: count as u64, trials: 30, interval: Some(wilson(count, 30)) }
     };
     let group = |i: usize| RateGroup {
         title: if groups > 1 { SCENARIOS[i].into() } else { String::new() },

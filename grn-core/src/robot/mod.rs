@@ -18,4 +18,4 @@ pub mod slots;
 
 pub use controller::{Controller, LoadError};
 pub use message::{Message, ObstacleReport, TargetReport};
-pub use percept::{Command, Millimetres, Percept, Sighting};
+pub use percept::{Command, Millimetres, Percept, PerceptError, Sighting};

@@ -5,7 +5,8 @@ use crate::geometry::{Edge, length_squared};
 use crate::random::Stream;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_BEARINGS_DEG, PROXIMITY_RANGE, PROXIMITY_SENSORS};
-use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS, Millimetres, Sighting};
+use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS};
+use grn_core::robot::{Millimetres, Sighting};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 

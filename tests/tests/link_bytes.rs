@@ -99,7 +99,22 @@ fn command() -> Command {
 }
 
 /// Percept and command of operation 10 in each version of the protocol.
-const TICK: [(u8, &[u8], &[u8]); 1] = [(1, &[], &[])];
+#[rustfmt::skip]
+const TICK: [(u8, &[u8], &[u8]); 1] = [(
+    1,
+    &[
+        255, 136, 122, 224, 197, 8, // position
+        130, 181, 1, 129, 181, 1, // heading
+        0, 1, 127, 128, 1, 244, 3, 255, 127, 128, 128, 1, 255, 255, 3, // proximity
+        1, 2, 20, 21, // targets
+        2, 126, 127, 128, 1, 129, 1, // obstacles
+        1, 7, 132, 4, 133, 4, 1, 1, 3, 216, 4, 251, 6, 200, 1, 208, 15, 207, 15, 3, // heard
+    ],
+    &[
+        151, 17, 126, // wheels
+        1, 7, 132, 4, 133, 4, 1, 1, 3, 216, 4, 251, 6, 200, 1, 208, 15, 207, 15, 3, // broadcast
+    ],
+)];
 
 const WAY_OUT: &str = "\
     The bytes of operation 10 are not those of this version of the link, so hosts and robots of other releases would read \

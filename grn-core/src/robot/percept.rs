@@ -2,6 +2,7 @@
 
 use super::epuck2::PROXIMITY_SENSORS;
 use super::message::Message;
+use super::position::Millimetres;
 use core::fmt;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
@@ -22,15 +23,6 @@ pub const HEADING_UNIT: i16 = 1 << 14;
 /// that of a table of sines, or of a heading that is turned by small angles again and again. A wrong unit (degrees, 2^-15,
 /// thousandths) or a heading that was never set is much farther off.
 pub const HEADING_TOLERANCE: i16 = HEADING_UNIT / 32;
-
-/// A position in the world, millimetres, within ±32.7 m.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Millimetres {
-    /// East.
-    pub x: i16,
-    /// North.
-    pub y: i16,
-}
 
 /// A target seen with the robot's own sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,15 +1,14 @@
 //! `grn flash`.
 
 use super::{Answer, Failure, about, print};
-use crate::port::Port;
 use crate::sectors::Sector;
 use crate::slot_file::SlotFile;
-use firmware_sim::link::flashing::{self, Flashed, Progress};
-use firmware_sim::link::{Client, Patience};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::MAX_WIRE;
 use grn_core::robot::link::message::{About, MAX_CHUNK, encode_request};
 use grn_core::robot::link::message::{Begin, Chunk};
+use grn_link::flashing::{self, Flashed, Progress};
+use grn_link::{Client, Patience, Port};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::Write;
 use std::path::PathBuf;

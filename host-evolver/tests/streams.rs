@@ -110,7 +110,8 @@ fn a_campaign_leaves_its_tables_whatever_happens_to_its_streams() -> Outcome {
     )?;
     for (name, [output, error]) in [("closed", [closed()?, closed()?]), ("full", [full()?, full()?])] {
         let folder = scratch.path().join(name);
-        let status = grn().arg("campaign").arg(&plan).arg("--out").arg(&folder).stdout(output).stderr(error).status()?;
+        let status =
+            grn().arg("campaign").arg(&plan).arg("--out").arg(&folder).stdout(output).stderr(error).status()?;
         assert_eq!(status.code(), Some(0), "{name}");
         for table in ["results.csv", "summary.csv", "transfers.csv", "f2.svg"] {
             assert!(folder.join(table).exists(), "{name}: {table} is missing");

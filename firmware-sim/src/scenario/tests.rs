@@ -37,7 +37,7 @@ fn every_error_names_place_value_and_remedy() {
         ("region = [20.0, 20.0]", "region = [20.0, -3.0]", "3:17: region[1] = -3.0: must be a number from 0.5 to 3000"),
         ("region = [20.0, 20.0]", "region = [inf, 20.0]", "3:11: region[0] = inf: must be"),
         ("region = [20.0, 20.0]", "region = [1e20, 20.0]", "3:11: region[0] = 1e20: must be"),
-        ("region = [20.0, 20.0]", "region = [2e3, 2e3]", "3:10: region = [2000.0, 2000.0]: 1.0e8 lattice nodes"),
+        ("region = [20.0, 20.0]", "region = [2e3, 2e3]", "3:10: region = [2e3, 2e3]: 1.0e8 lattice nodes"),
         ("region = [20.0, 20.0]", "region = [20.0, 20.0, 1]", "3:10: region = [20.0, 20.0, 1]: invalid length 3"),
         ("snapshots = 15", "snapshots = 0", "4:13: snapshots = 0: must be a number from 1 to 10000"),
         ("snapshots = 15", "snapshots = 10001", "4:13: snapshots = 10001: must be"),

@@ -1,9 +1,9 @@
 //! `grn show`.
 
-use super::{Answer, Failure, about, print, print_json};
-use crate::describe;
+use super::{Answer, Failure, about, output};
+use crate::evaluation::Model;
 use crate::files::read_blob;
-use crate::objective::Model;
+use crate::model::describe;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -21,9 +21,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
     let bytes = std::fs::metadata(&arguments.blob).map_err(about(arguments.blob.display()))?.len();
     if arguments.json {
-        print_json(&as_json(&blob, bytes))?
+        output::product_json(&as_json(&blob, bytes))?;
     } else {
-        print(as_text(&blob, bytes))?
+        output::product(as_text(&blob, bytes))?;
     }
     Ok(Answer::Yes)
 }
@@ -47,7 +47,7 @@ fn identity(blob: &Blob) -> String {
 }
 
 /// Nodes of the syntax tree, functions and terminals.
-fn nodes(tree: &crate::report::SyntaxTree) -> usize {
+fn nodes(tree: &grn_figures::SyntaxTree) -> usize {
     1 + tree.children.iter().map(nodes).sum::<usize>()
 }
 

@@ -86,7 +86,7 @@ fn every_error_names_place_value_and_remedy() {
         ("[14.0000, 6.0000], [6.0000, 6.0000]", "[9.0, 0.0]", "25:11: wall[1].polygon: encloses no area"),
         ("[14.0000, 20.0000]", "[nan, 20.0]", "wall[0].polygon[2] = [nan, 20.0]: must be finite"),
         ("[14.0000, 20.0000]", "[1e9, 20.0]", "wall[0].polygon[2] = [1e9, 20.0]: must be finite and at most 100"),
-        ("[14.0000, 20.0000]", "[14.0, 14.0]", "wall[0].polygon[1] = [14.0, 14.0]: must differ"),
+        ("[14.0000, 20.0000]", "[14.0, 14.0]", "wall[0].polygon[1] = [14.0000, 14.0000]: must differ"),
         ("name = \"channel\"", "name = \"..\"", "2:8: name = \"..\": a name with letters or digits"),
         ("name = \"channel\"", "name = \"a\\u0000\"", "2:8: name = \"a\\u0000\": a name is one line"),
         ("name = \"channel\"", "name = 3", "2:8: name = 3: invalid type"),

@@ -69,7 +69,14 @@ impl fmt::Display for RunError {
     }
 }
 
-impl std::error::Error for RunError {}
+impl std::error::Error for RunError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            RunError::File(error) => error.source(),
+            RunError::Figure(..) => None,
+        }
+    }
+}
 
 impl From<FileError> for RunError {
     fn from(error: FileError) -> Self {

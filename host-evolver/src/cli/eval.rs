@@ -1,6 +1,7 @@
 //! `grn eval`.
 
-use super::{Answer, Failure, about, print};
+use super::output::Reader;
+use super::{Answer, Failure, about, output};
 use crate::files::read_blob;
 use clap::ValueEnum;
 use grn_core::blob::Blob;
@@ -37,7 +38,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             let place = format!("standard input, line {}", index + 1);
             Failure::Input(format!("{place}: {line:?} is not two finite numbers like 0.5,0.25"))
         })?;
-        print(evaluate(x1, x2))?;
+        if output::product(evaluate(x1, x2))? == Reader::Gone {
+            break;
+        }
     }
     Ok(Answer::Yes)
 }

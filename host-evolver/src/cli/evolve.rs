@@ -1,7 +1,7 @@
 //! `grn evolve`.
 
 use super::simulate::{DEFAULT_ROBOTS, table, usual_config, watched, write_folder};
-use super::{Answer, Failure, about, interrupt, print};
+use super::{Answer, Failure, about, interrupt, output};
 use crate::evaluation::World;
 use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
 use crate::model::deploy::DEFAULT_SCALE;
@@ -79,21 +79,23 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     };
     let mut search = Search::new(&world, settings.clone(), state)?;
     let stop = interrupt::watch()?;
-    search_on(&mut search, &run, arguments.threads, stop, &folder)?;
+    search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
     let knee = run.finish(&search, &world, arguments.scale)?;
     let front = search.front();
-    print(front_table(&settings.objectives, &front))?;
-    print(format!("\nresults in {}\n", folder.display()))?;
+    output::report(front_table(&settings.objectives, &front));
+    output::report(format!("\nresults in {}\n", folder.display()));
     if front.iter().any(|member| !member.is_feasible()) {
-        print("infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations")?;
+        output::report(
+            "infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations",
+        );
         return Ok(Answer::No);
     }
     let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
-    let simulation = watched(&knee, &scenario, config, Number::F32, stop)?;
+    let simulation = watched(&knee, &scenario, config, Number::F32, &stop)?;
     write_folder(&run.path("simulation"), &simulation, &scenario, &knee)?;
-    print(format!("the knee on {robots} simulated robots (simulation/trace.svg):"))?;
-    print(table(&simulation))?;
+    output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
+    output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
 
@@ -143,12 +145,12 @@ fn search_on(
                 run.save(search.state())?;
                 if bar.is_hidden() {
                     let best = search.state().history.last().and_then(|milestone| milestone.best_f2);
-                    eprintln!(
+                    output::notice(format_args!(
                         "generation {}: {} evaluations, {}",
                         search.state().generation,
                         search.state().evaluations,
                         best_text(best)
-                    );
+                    ));
                 }
             }
             Advance::Finished => {

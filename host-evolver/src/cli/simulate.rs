@@ -1,6 +1,6 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, print, print_json};
+use super::{Answer, Failure, about, interrupt, output};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
@@ -83,17 +83,15 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         ..usual_config(&blob, arguments.robots)
     };
     let stop = interrupt::watch()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, stop).map_err(|failure| match failure {
-        Failure::Input(message) => Failure::Input(format!("{}: {message}", arguments.blob.display())),
-        other => other,
-    })?;
+    let simulation = simulated(arguments, &blob, &scenario, config, &stop)
+        .map_err(|failure| failure.about(arguments.blob.display()))?;
     if let Some(folder) = &arguments.out {
         write_folder(folder, &simulation, &scenario, &blob)?;
     }
     if arguments.json {
-        print_json(&as_json(&simulation, arguments.number))?;
+        output::product_json(&as_json(&simulation, arguments.number))?;
     } else {
-        print(table(&simulation))?;
+        output::report(table(&simulation));
     }
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }

@@ -7,9 +7,9 @@ use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::variation::MotifSet;
 use crate::run::{Manifest, RunFolder};
-use crate::simulation::Number;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
+use grn_core::scalar::NumberType;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     }
     let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
-    let simulation = watched(&knee, &scenario, config, Number::F32, &stop)?;
+    let simulation = watched(&knee, &scenario, config, NumberType::F32, &stop)?;
     write_folder(&run.path("simulation"), &simulation, &scenario, &knee)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));

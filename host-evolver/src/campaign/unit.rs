@@ -4,14 +4,19 @@ use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
 use crate::evaluation::World;
 use crate::evolve::Knee;
-use crate::files::{self, FileError};
+use crate::files::{self, Contents, FileError, Ledger};
 use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::run::FRONT_HEADER;
+use firmware_sim::scenario::Morphogen;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 const MANIFEST: &str = "manifest.json";
+/// What every run has left, whatever was on its front.
+const NEEDED: [&str; 3] = ["front.csv", "history.csv", "knee.grn"];
 
 /// What decides a run; equal manifests give equal results.
 #[derive(Debug, Serialize, Deserialize)]
@@ -23,6 +28,19 @@ struct Manifest {
     evaluations: usize,
     method: Method,
     seed: u64,
+    /// The run's files with the SHA-256 of each.
+    files: Ledger,
+}
+
+/// What there is of a run in a folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// All of it, as it was written.
+    Whole,
+    /// Something of it, but not all, or not as it was written: where, and what is wrong.
+    Damaged(String),
+    /// Nothing.
+    Nothing,
 }
 
 /// A run by its places in the plan.
@@ -80,30 +98,47 @@ impl Unit {
     fn manifest(self, plan: &Plan) -> Manifest {
         let planned = &plan.scenarios[self.scenario];
         Manifest {
-            grn: env!("CARGO_PKG_VERSION").into(),
+            grn: files::VERSION.into(),
             scenario: planned.scenario.name().into(),
             scenario_sha256: files::sha256(planned.scenario.to_toml()),
             evaluations: planned.evaluations,
             method: plan.methods[self.method].method.clone(),
             seed: self.seed,
+            files: Ledger::default(),
         }
     }
 
-    /// Whether the run is in a campaign's folder.
+    /// What there is of the run in a campaign's folder.
     ///
     /// # Errors
-    /// A run with this name that was made from something else.
-    pub fn is_done(self, plan: &Plan, campaign: &Path) -> Result<bool, FileError> {
-        let path = campaign.join(self.folder(plan)).join(MANIFEST);
-        if !path.exists() {
-            return Ok(false);
+    /// A run with this name that was made from something else, or by another version.
+    pub fn find(self, plan: &Plan, campaign: &Path) -> Result<Found, FileError> {
+        let folder = campaign.join(self.folder(plan));
+        if !folder.exists() {
+            return Ok(Found::Nothing);
         }
-        match files::difference(&self.manifest(plan), &files::read_json(&path)?) {
-            None => Ok(true),
-            Some(difference) => {
-                let way_out = "choose another folder with --out, or delete this run";
-                Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")))
+        let path = folder.join(MANIFEST);
+        let damaged = |fault: &dyn fmt::Display| Ok(Found::Damaged(fault.to_string()));
+        if !path.exists() {
+            return damaged(&format_args!("{}: not whole, {MANIFEST} is missing", folder.display()));
+        }
+        // A manifest that cannot be read says nothing of what the run was made from.
+        let found: Manifest = match files::check_version(&path).and_then(|()| files::read_json(&path)) {
+            Ok(found) => found,
+            Err(error) if error.is_damage() => return damaged(&error),
+            Err(error) => return Err(error),
+        };
+        let ours = Manifest { files: found.files.clone(), ..self.manifest(plan) };
+        if let Some(difference) = files::difference(&ours, &found) {
+            let way_out = "choose another folder with --out, or delete this run";
+            return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")));
+        }
+        match found.files.first_damaged(&folder) {
+            Some(name) => damaged(&format_args!("{}: missing or changed", folder.join(name).display())),
+            None if NEEDED.iter().any(|needed| !found.files.names().any(|name| name == *needed)) => {
+                damaged(&format_args!("{}: does not tell of all files", path.display()))
             }
+            None => Ok(Found::Whole),
         }
     }
 
@@ -116,37 +151,40 @@ impl Unit {
         let method = &plan.methods[self.method].method;
         let Some(outcome) = method.run(world, planned.evaluations, self.seed, stop) else { return Ok(false) };
         let place = campaign.join(self.folder(plan));
-        files::write_folder(&place, |folder| self.write(plan, folder, &outcome))?;
+        self.put(plan, &place, contents(&outcome, &planned.scenario.morphogen(), &place)?)?;
         Ok(true)
     }
 
-    fn write(self, plan: &Plan, folder: &Path, outcome: &Outcome) -> Result<(), FileError> {
-        let morphogen = plan.scenarios[self.scenario].scenario.morphogen();
-        let chosen = chosen(outcome.front.iter().map(|solution| solution.knee));
-        let mut rows = Vec::new();
-        for (place, solution) in outcome.front.iter().enumerate() {
-            let blob = deploy::blob(solution.network.clone(), &morphogen, DEFAULT_SCALE);
-            let name = format!("{place:02}-{}-nodes.grn", solution.nodes);
-            if place == chosen {
-                files::write_blob(&folder.join("knee.grn"), &blob)?;
-            }
-            files::write_blob(&folder.join(&name), &blob)?;
-            rows.push([
-                solution.nodes.to_string(),
-                solution.f2.to_string(),
-                solution.violation.to_string(),
-                solution.knee.to_string(),
-                solution.expression(),
-                name,
-            ]);
+    /// Takes the run over from another campaign's folder where it is whole.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn copy(self, plan: &Plan, from: &Path, to: &Path) -> Result<(), FileError> {
+        let source = from.join(self.folder(plan));
+        let manifest: Manifest = files::read_json(&source.join(MANIFEST))?;
+        let mut contents = Contents::new();
+        for name in manifest.files.names() {
+            let path = source.join(name);
+            let content = std::fs::read(&path).map_err(|error| FileError::from_system(path, "read", error))?;
+            contents.insert(name.to_owned(), content);
         }
-        files::write(&folder.join("front.csv"), files::csv(FRONT_HEADER, rows))?;
-        let lines = outcome.history.iter().map(|moment| {
-            let best = moment.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-            [moment.evaluations.to_string(), best, moment.hypervolume.to_string()]
-        });
-        files::write(&folder.join("history.csv"), files::csv(["evaluations", "best_f2", "hypervolume"], lines))?;
-        files::write(&folder.join(MANIFEST), files::json(&self.manifest(plan)))
+        self.put(plan, &to.join(self.folder(plan)), contents)
+    }
+
+    /// Puts the files of a run in place, which is empty or holds a damaged run. The manifest comes last.
+    fn put(self, plan: &Plan, place: &Path, contents: Contents) -> Result<(), FileError> {
+        let manifest = Manifest { files: Ledger::of(&contents), ..self.manifest(plan) };
+        if place.exists() {
+            clear(place)?;
+        }
+        let mut files: Vec<_> = contents.into_iter().collect();
+        files.push((MANIFEST.into(), files::json(&manifest).into_bytes()));
+        if !place.exists() {
+            return files::write_folder(place, |folder| {
+                files.iter().try_for_each(|(name, content)| files::write(&folder.join(name), content))
+            });
+        }
+        files.iter().try_for_each(|(name, content)| files::write(&place.join(name), content))
     }
 
     /// The front of a run that is done.
@@ -164,6 +202,58 @@ impl Unit {
     pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Moment>, FileError> {
         files::read_csv(&campaign.join(self.folder(plan)).join("history.csv"))
     }
+}
+
+/// The files of a run, all but its manifest.
+fn contents(outcome: &Outcome, morphogen: &Morphogen, place: &Path) -> Result<Contents, FileError> {
+    let chosen = chosen(outcome.front.iter().map(|solution| solution.knee));
+    let mut contents = Contents::new();
+    let mut rows = Vec::new();
+    for (number, solution) in outcome.front.iter().enumerate() {
+        let blob = deploy::blob(solution.network.clone(), morphogen, DEFAULT_SCALE);
+        let name = format!("{number:02}-{}-nodes.grn", solution.nodes);
+        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(place.join(&name), error))?;
+        if number == chosen {
+            contents.insert("knee.grn".into(), bytes.clone());
+        }
+        contents.insert(name.clone(), bytes);
+        rows.push([
+            solution.nodes.to_string(),
+            solution.f2.to_string(),
+            solution.violation.to_string(),
+            solution.knee.to_string(),
+            solution.expression(),
+            name,
+        ]);
+    }
+    contents.insert("front.csv".into(), files::csv(FRONT_HEADER, rows));
+    let lines = outcome.history.iter().map(|moment| {
+        let best = moment.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
+        [moment.evaluations.to_string(), best, moment.hypervolume.to_string()]
+    });
+    contents.insert("history.csv".into(), files::csv(["evaluations", "best_f2", "hypervolume"], lines));
+    Ok(contents)
+}
+
+/// Deletes what is left of a damaged run, manifest first, and the folder if nothing else is in it. What no run writes stays.
+fn clear(place: &Path) -> Result<(), FileError> {
+    let is_model = |name: &str| {
+        let parts = name.strip_suffix("-nodes.grn").and_then(|name| name.split_once('-'));
+        parts.is_some_and(|(place, nodes)| place.parse::<u32>().is_ok() && nodes.parse::<u32>().is_ok())
+    };
+    let names = files::entries(place)?.into_iter().map(|(name, _)| name);
+    let ours = names.filter(|name| is_model(name) || NEEDED.contains(&name.as_str()));
+    for name in std::iter::once(MANIFEST.to_owned()).chain(ours) {
+        match std::fs::remove_file(place.join(&name)) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(FileError::from_system(place.join(name), "replaced", error));
+            }
+            _ => {}
+        }
+    }
+    // Fails where something else lies in it, and that is meant.
+    let _ = std::fs::remove_dir(place);
+    Ok(())
 }
 
 /// The place of the knee that is deployed: the first if there is none.

@@ -269,11 +269,16 @@ fn first_difference(place: &str, ours: &serde_json::Value, theirs: &serde_json::
 }
 
 /// Lines of text fields as CSV.
-pub fn csv<const N: usize>(header: [&str; N], lines: impl IntoIterator<Item = [String; N]>) -> Vec<u8> {
+pub fn csv<H, L>(header: H, lines: impl IntoIterator<Item = L>) -> Vec<u8>
+where
+    H: IntoIterator<Item: AsRef<[u8]>>,
+    L: IntoIterator<Item: AsRef<[u8]>>,
+{
     let mut csv = csv::Writer::from_writer(Vec::new());
-    for line in std::iter::once(header.map(String::from)).chain(lines) {
-        // Writing to memory cannot fail.
-        let _ = csv.write_record(&line);
+    // Writing to memory cannot fail.
+    let _ = csv.write_record(header);
+    for line in lines {
+        let _ = csv.write_record(line);
     }
     csv.into_inner().unwrap_or_default()
 }

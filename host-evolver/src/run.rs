@@ -9,18 +9,17 @@ mod manifest;
 pub use manifest::Manifest;
 
 use crate::evaluation::{Model, World};
-use crate::evolve::{FrontMember, Milestone, Search, State};
+use crate::evolve::{FrontMember, Search, State};
 use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock};
 use crate::model::deploy;
 use crate::model::describe;
+use crate::results;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
 use manifest::MANIFEST;
 use std::path::{Path, PathBuf};
 
-/// The columns of a front.
-pub const FRONT_HEADER: [&str; 6] = ["nodes", "f2", "violation", "knee", "expression", "blob"];
 const CHECKPOINT: &str = "checkpoint.json";
 const SCENARIO: &str = "scenario.toml";
 /// Folders in a run's folder.
@@ -145,29 +144,14 @@ impl RunFolder {
     /// A model that no blob can hold.
     pub fn results(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Results, FileError> {
         let front = search.front();
-        let steepness = search.settings().steepness;
-        let mut contents = Contents::new();
+        let morphogen = world.scenario().morphogen();
+        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, scale);
+        let State { history, .. } = search.state();
+        let (mut contents, knee) =
+            results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
         contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
-        let mut rows = Vec::new();
-        let mut knee = None;
-        for (place, member) in front.iter().enumerate() {
-            let name = format!("front/{place:02}-{}-nodes.grn", member.individual.tree.size());
-            let network = member.individual.tree.network(steepness);
-            let network = network.map_err(|error| FileError::new(self.path(&name), error))?;
-            let blob = deploy::blob(network, &world.scenario().morphogen(), scale);
-            let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(self.path(&name), error))?;
-            if member.knee.utility || knee.is_none() {
-                contents.insert("knee.grn".into(), bytes.clone());
-                knee = Some(blob);
-            }
-            contents.insert(name.clone(), bytes);
-            rows.push((member, name));
-        }
-        contents.insert("front.csv".into(), front_csv(&rows));
-        contents.insert("history.csv".into(), history_csv(search.state()).into_bytes());
-        let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
         let mut figures = vec![
-            ("pareto.svg", figures::pareto(&front, &search.state().population, &world.scenario().ring())),
+            ("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring())),
             ("tree.svg", grn_figures::tree(&describe::syntax_tree(&knee.network))),
             ("grn.svg", grn_figures::grn(&describe::graph(&knee.network))),
         ];
@@ -201,29 +185,4 @@ impl RunFolder {
         self.manifest.files = self.manifest.files.publish(self.lock.folder(), contents, write)?;
         Ok(())
     }
-}
-
-fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
-    let lines = rows.iter().map(|(member, blob)| {
-        let individual = &member.individual;
-        [
-            individual.tree.size().to_string(),
-            individual.f2.to_string(),
-            individual.violation.to_string(),
-            member.knee.to_string(),
-            individual.tree.to_string(),
-            blob.clone(),
-        ]
-    });
-    files::csv(FRONT_HEADER, lines)
-}
-
-fn history_csv(state: &State) -> String {
-    let mut text = String::from("evaluations,best_f2,feasible,front,hypervolume\n");
-    for milestone in &state.history {
-        let best = milestone.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-        let Milestone { evaluations, feasible, front, hypervolume, .. } = milestone;
-        text += &format!("{evaluations},{best},{feasible},{front},{hypervolume}\n");
-    }
-    text
 }

@@ -3,11 +3,10 @@
 use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
 use crate::evaluation::World;
-use crate::evolve::Knee;
+use crate::evolve::{FrontMember, Milestone};
 use crate::files::{self, Contents, FileError, Ledger};
 use crate::model::deploy::{self, DEFAULT_SCALE};
-use crate::run::FRONT_HEADER;
-use firmware_sim::scenario::Morphogen;
+use crate::results;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::io::ErrorKind;
@@ -15,8 +14,6 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 const MANIFEST: &str = "manifest.json";
-/// What every run has left, whatever was on its front.
-const NEEDED: [&str; 3] = ["front.csv", "history.csv", "knee.grn"];
 
 /// What decides a run; equal manifests give equal results.
 #[derive(Debug, Serialize, Deserialize)]
@@ -52,32 +49,6 @@ pub struct Unit {
     pub method: usize,
     /// Seed.
     pub seed: u64,
-}
-
-/// A line of a run's `front.csv`.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Member {
-    /// f1.
-    pub nodes: usize,
-    /// f2.
-    pub f2: f64,
-    /// Constraint violation.
-    pub violation: f64,
-    /// Which knee it is, in words; empty for none.
-    pub knee: String,
-    /// Prefix notation with θ.
-    pub expression: String,
-}
-
-/// A line of a run's `history.csv`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-pub struct Moment {
-    /// Evaluations of f2 spent.
-    pub evaluations: usize,
-    /// Best f2 of a feasible model so far.
-    pub best_f2: Option<f64>,
-    /// Share of the box below the reference that feasible models dominate.
-    pub hypervolume: f64,
 }
 
 impl Unit {
@@ -135,7 +106,7 @@ impl Unit {
         }
         match found.files.first_damaged(&folder) {
             Some(name) => damaged(&format_args!("{}: missing or changed", folder.join(name).display())),
-            None if NEEDED.iter().any(|needed| !found.files.names().any(|name| name == *needed)) => {
+            None if results::ALWAYS.iter().any(|needed| !found.files.names().any(|name| name == *needed)) => {
                 damaged(&format_args!("{}: does not tell of all files", path.display()))
             }
             None => Ok(Found::Whole),
@@ -149,9 +120,13 @@ impl Unit {
     pub fn run(self, plan: &Plan, campaign: &Path, world: &World, stop: &AtomicBool) -> Result<bool, FileError> {
         let planned = &plan.scenarios[self.scenario];
         let method = &plan.methods[self.method].method;
-        let Some(outcome) = method.run(world, planned.evaluations, self.seed, stop) else { return Ok(false) };
-        let place = campaign.join(self.folder(plan));
-        self.put(plan, &place, contents(&outcome, &planned.scenario.morphogen(), &place)?)?;
+        let Some(Outcome { front, history }) = method.run(world, planned.evaluations, self.seed, stop) else {
+            return Ok(false);
+        };
+        let morphogen = planned.scenario.morphogen();
+        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
+        let (contents, _) = results::contents(&method.objectives(), &front, &history, blob_of, "")?;
+        self.put(plan, &campaign.join(self.folder(plan)), contents)?;
         Ok(true)
     }
 
@@ -191,48 +166,17 @@ impl Unit {
     ///
     /// # Errors
     /// A damaged file.
-    pub fn front(self, plan: &Plan, campaign: &Path) -> Result<Vec<Member>, FileError> {
-        files::read_csv(&campaign.join(self.folder(plan)).join("front.csv"))
+    pub fn front(self, plan: &Plan, campaign: &Path) -> Result<Vec<FrontMember>, FileError> {
+        results::read_front(&campaign.join(self.folder(plan)))
     }
 
     /// The history of a run that is done.
     ///
     /// # Errors
     /// A damaged file.
-    pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Moment>, FileError> {
-        files::read_csv(&campaign.join(self.folder(plan)).join("history.csv"))
+    pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Milestone>, FileError> {
+        results::read_history(&campaign.join(self.folder(plan)))
     }
-}
-
-/// The files of a run, all but its manifest.
-fn contents(outcome: &Outcome, morphogen: &Morphogen, place: &Path) -> Result<Contents, FileError> {
-    let chosen = chosen(outcome.front.iter().map(|solution| solution.knee));
-    let mut contents = Contents::new();
-    let mut rows = Vec::new();
-    for (number, solution) in outcome.front.iter().enumerate() {
-        let blob = deploy::blob(solution.network.clone(), morphogen, DEFAULT_SCALE);
-        let name = format!("{number:02}-{}-nodes.grn", solution.nodes);
-        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(place.join(&name), error))?;
-        if number == chosen {
-            contents.insert("knee.grn".into(), bytes.clone());
-        }
-        contents.insert(name.clone(), bytes);
-        rows.push([
-            solution.nodes.to_string(),
-            solution.f2.to_string(),
-            solution.violation.to_string(),
-            solution.knee.to_string(),
-            solution.expression(),
-            name,
-        ]);
-    }
-    contents.insert("front.csv".into(), files::csv(FRONT_HEADER, rows));
-    let lines = outcome.history.iter().map(|moment| {
-        let best = moment.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-        [moment.evaluations.to_string(), best, moment.hypervolume.to_string()]
-    });
-    contents.insert("history.csv".into(), files::csv(["evaluations", "best_f2", "hypervolume"], lines));
-    Ok(contents)
 }
 
 /// Deletes what is left of a damaged run, manifest first, and the folder if nothing else is in it. What no run writes stays.
@@ -242,7 +186,7 @@ fn clear(place: &Path) -> Result<(), FileError> {
         parts.is_some_and(|(place, nodes)| place.parse::<u32>().is_ok() && nodes.parse::<u32>().is_ok())
     };
     let names = files::entries(place)?.into_iter().map(|(name, _)| name);
-    let ours = names.filter(|name| is_model(name) || NEEDED.contains(&name.as_str()));
+    let ours = names.filter(|name| is_model(name) || results::ALWAYS.contains(&name.as_str()));
     for name in std::iter::once(MANIFEST.to_owned()).chain(ours) {
         match std::fs::remove_file(place.join(&name)) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -254,9 +198,4 @@ fn clear(place: &Path) -> Result<(), FileError> {
     // Fails where something else lies in it, and that is meant.
     let _ = std::fs::remove_dir(place);
     Ok(())
-}
-
-/// The place of the knee that is deployed: the first if there is none.
-pub fn chosen(knees: impl Iterator<Item = Knee>) -> usize {
-    knees.into_iter().position(|knee| knee.utility).unwrap_or(0)
 }

@@ -3,14 +3,14 @@
 use super::simulate::{self, DEFAULT_ROBOTS, table, usual_config, watched};
 use super::{Answer, Failure, about, interrupt, output, this_command};
 use crate::evaluation::World;
-use crate::evolve::{Advance, FrontMember, Search, Settings};
+use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
 use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::variation::MotifSet;
 use crate::run::{Manifest, Results, RunFolder};
-use crate::simulation::Number;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
+use grn_core::scalar::NumberType;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::ErrorKind;
 use std::num::NonZeroUsize;
@@ -34,6 +34,9 @@ pub struct Arguments {
     /// Motifs to build with: all ten, or the eight with two inputs.
     #[arg(long, default_value = "all")]
     motifs: Motifs,
+    /// What to minimise: two or three of the objectives' names, separated by commas.
+    #[arg(long, default_value_t = Objectives::paper(), value_name = "NAMES")]
+    objectives: Objectives,
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE)]
     scale: f32,
@@ -60,6 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             Motifs::All => MotifSet::All,
             Motifs::Binary => MotifSet::Binary,
         },
+        objectives: arguments.objectives.clone(),
         ..Settings::default()
     };
     if !(0.01..=10.0).contains(&arguments.scale) {
@@ -77,14 +81,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         (RunFolder::create(&folder, &this_command(), manifest, &scenario)?, None)
     };
     run.notices().iter().for_each(output::notice);
-    let mut search = Search::new(&world, settings, state)?;
+    let mut search = Search::new(&world, settings.clone(), state)?;
     search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
     let front = search.front();
-    let is_feasible = front.iter().all(|member| member.individual.is_feasible());
+    let is_feasible = front.iter().all(|member| member.is_feasible());
     let Results { mut contents, knee, not_drawn } = run.results(&search, &world, arguments.scale)?;
     run.publish(&contents, !is_feasible)?;
     not_drawn.iter().for_each(output::notice);
-    output::report(front_table(&front));
+    output::report(front_table(&settings.objectives, &front));
     output::report(format!("\nresults in {}\n", folder.display()));
     if !is_feasible {
         output::report(
@@ -94,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     }
     let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
-    let simulation = watched(&knee, &scenario, config, Number::F32, &stop)?;
+    let simulation = watched(&knee, &scenario, config, NumberType::F32, &stop)?;
     for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
         contents.insert(format!("simulation/{name}"), content);
     }
@@ -191,17 +195,13 @@ fn best_text(best: Option<f64>) -> String {
     best.map_or("nothing feasible yet".into(), |f2| format!("best f2 {f2:.5}"))
 }
 
-fn front_table(front: &[FrontMember]) -> String {
-    let mut text = format!("{:>5}  {:<9}{:<15}{}", "nodes", "f2", "knee", "expression");
+fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {
+    let further: String = objectives.further_names().map(|name| format!("{name:<13}")).collect();
+    let mut text = format!("{:>5}  {:<9}{further}{:<15}{}", "nodes", "f2", "knee", "expression");
     for member in front {
-        let individual = &member.individual;
-        text += &format!(
-            "\n{:>5}  {:<9.5}{:<15}{}",
-            individual.tree.size(),
-            individual.f2,
-            member.knee.to_string(),
-            individual.tree
-        );
+        let further: String = member.further.iter().map(|value| format!("{value:<13.5}")).collect();
+        let (nodes, f2, knee) = (member.nodes, member.f2, member.knee.to_string());
+        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression());
     }
     text
 }

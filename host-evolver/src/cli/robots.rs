@@ -45,9 +45,9 @@ fn ask(wire: Box<dyn Wire>) -> Result<(About, RobotStatus), LinkError> {
 }
 
 fn described(about: &About, status: &RobotStatus) -> String {
-    let About { protocol, blob_format, genes, arithmetic, name, .. } = about;
+    let About { protocol, blob_format, genes, number_type, name, .. } = about;
     let mut text =
-        format!("{name}, {arithmetic:?}, link version {protocol}, blob format {blob_format}, at most {genes} genes");
+        format!("{name}, {number_type}, link version {protocol}, blob format {blob_format}, at most {genes} genes");
     for (place, slot) in status.slots.iter().enumerate() {
         let stage = match slot.stage {
             Stage::Empty => "empty",

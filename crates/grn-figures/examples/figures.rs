@@ -1,6 +1,7 @@
 //! Draws every kind of figure from made-up data: `cargo run --example figures -- DIRECTORY`.
 
 use grn_figures::*;
+use grn_optimisers::knee::Knee;
 use grn_optimisers::statistics::{quartiles, wilson};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -55,22 +56,26 @@ fn noise(seed: u64) -> f64 {
     ((z ^ (z >> 27)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-fn point(nodes: u32, f2: f64, feasible: bool, knee: Option<KneeKind>, label: &str) -> ParetoPoint {
+const NONE: Knee = Knee { angle: false, utility: false };
+const ANGLE: Knee = Knee { angle: true, utility: false };
+const BOTH: Knee = Knee { angle: true, utility: true };
+
+fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
     ParetoPoint { nodes, f2, feasible, knee, label: label.into() }
 }
 
 fn population() -> Vec<ParetoPoint> {
     let mut points = vec![
-        point(3, 0.512, true, None, "XNOR(x1,x2)"),
-        point(5, 0.0164, true, Some(KneeKind::Both), "XNOR(NAND(x1,x1),x2)"),
-        point(7, 0.0149, true, Some(KneeKind::Angle), "XNOR(ANDN(x1,x2),NAND(x2,x1))"),
-        point(11, 0.0143, true, None, "…"),
-        point(13, 0.01412, true, None, "…"),
+        point(3, 0.512, true, NONE, "(XNOR x1 x2)"),
+        point(5, 0.0164, true, BOTH, "(XNOR (NAND x1 x1) x2)"),
+        point(7, 0.0149, true, ANGLE, "(XNOR (ANDN x1 x2) (NAND x2 x1))"),
+        point(11, 0.0143, true, NONE, "…"),
+        point(13, 0.01412, true, NONE, "…"),
     ];
     for i in 0..30 {
         let nodes = 3 + 2 * (noise(i) * 6.5) as u32;
         let f2 = 0.02 * libm::exp(3.2 * noise(100 + i));
-        points.push(point(nodes, f2, noise(200 + i) > 0.3, None, ""));
+        points.push(point(nodes, f2, noise(200 + i) > 0.3, NONE, ""));
     }
     points
 }
@@ -105,8 +110,8 @@ use Source::{Gene as G, X1, X2};
 
 fn two_genes() -> Vec<Gene> {
     vec![
-        gene("G1", "NAND", 0.8393, &[(X1, false), (X1, false)]),
-        gene("G2", "XNOR", 0.9256, &[(G(0), false), (X2, false)]),
+        gene("y1", "NAND", 0.8393, &[(X1, false), (X1, false)]),
+        gene("M", "XNOR", 0.9256, &[(G(0), false), (X2, false)]),
     ]
 }
 

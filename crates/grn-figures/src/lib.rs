@@ -32,12 +32,13 @@ mod odd_data;
 
 pub use boxes::{BoxFigure, BoxGroup, BoxPanel, boxes};
 pub use canvas::error::FigureError;
+pub use canvas::note::nothing_to_draw;
 pub use canvas::style;
 pub use chart::map::Window;
 pub use convergence::{ConvergenceFigure, ConvergencePanel, ConvergenceSeries, convergence};
 pub use grn::data::{Gene, Input, Source};
 pub use grn::figure::grn;
-pub use pareto::data::{KneeKind, ParetoPoint, Reference};
+pub use pareto::data::{ParetoPoint, Reference};
 pub use pareto::figure::pareto;
 pub use pattern::{Panel, PatternFigure, Target, pattern};
 pub use rates::{RateGroup, RateRow, RatesFigure, rates};

@@ -3,6 +3,7 @@
 
 use crate::chart::check::read;
 use crate::*;
+use grn_optimisers::knee::Knee;
 use grn_optimisers::statistics::quartiles;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -41,8 +42,8 @@ fn window() -> impl Strategy<Value = Window> {
     (at(), size(), size()).prop_map(|(min, w, h)| Window { min, max: [min[0] + w, min[1] + h] })
 }
 
-fn knee() -> impl Strategy<Value = Option<KneeKind>> {
-    prop_oneof![Just(None), Just(Some(KneeKind::Angle)), Just(Some(KneeKind::Utility)), Just(Some(KneeKind::Both))]
+fn knee() -> impl Strategy<Value = Knee> {
+    (any::<bool>(), any::<bool>()).prop_map(|(angle, utility)| Knee { angle, utility })
 }
 
 fn pages(drawn: Result<Vec<String>, FigureError>) {

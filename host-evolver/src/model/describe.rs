@@ -4,7 +4,6 @@ use super::notation::{self, Digits, Part, input_name};
 use super::tree::Terminal;
 use grn_core::network::{Gene, Network, Source};
 
-
 /// The name of a gene: y1, y2, … and M for the last.
 pub fn gene_name(network: &Network<f32>, index: usize) -> String {
     if index + 1 == network.genes().len() { "M".into() } else { format!("y{}", index + 1) }
@@ -169,7 +168,10 @@ mod tests {
         let tree: Tree = text.parse().unwrap();
         assert_eq!((tree.to_string(), expression(&network(text), Digits::All)), (text.into(), text.into()));
         let four = "(XNOR[0.9256] (NAND[0.5000] x1 x1) x2)";
-        assert_eq!((tree.expression(Digits::Four), expression(&network(text), Digits::Four)), (four.into(), four.into()));
+        assert_eq!(
+            (tree.expression(Digits::Four), expression(&network(text), Digits::Four)),
+            (four.into(), four.into())
+        );
         assert_eq!(expression(&network(text), Digits::None), "(XNOR (NAND x1 x1) x2)");
         let eh_grn = expression(&PUBLISHED[3].network().unwrap(), Digits::None);
         assert!(eh_grn.starts_with("(OR (NEG (AND (NEG x1) (NEG x2))) ("), "{eh_grn}");

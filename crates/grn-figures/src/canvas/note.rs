@@ -9,7 +9,8 @@ const LINE: f64 = 11.0;
 const MARGIN: f64 = 14.0;
 
 /// A document one column wide that says `Nothing to draw:` and why.
-pub(crate) fn nothing_to_draw(why: &str) -> String {
+#[must_use]
+pub fn nothing_to_draw(why: &str) -> String {
     let mut svg = Svg::default();
     let words = lines(&format!("Nothing to draw: {why}."), LABEL, COLUMN - 2.0 * MARGIN, 12);
     svg.open("note", "");

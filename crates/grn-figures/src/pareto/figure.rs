@@ -9,8 +9,9 @@ use crate::canvas::text::{BOLD, lines, width};
 use crate::chart::axes::{Chart, Line};
 use crate::chart::legend::{Key, legend};
 use crate::chart::place::Taken;
-use crate::pareto::data::{KneeKind, ParetoPoint, Reference};
+use crate::pareto::data::{ParetoPoint, Reference, knee_look};
 use crate::pareto::front::{Label, complexity, error_axis, front, staircase};
+use grn_optimisers::knee::Knee;
 
 /// What an f2 can be: the formula's sums of sigmoids stay below 3.
 const F2: (f64, f64) = (0.0, 1000.0);
@@ -84,13 +85,13 @@ pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>
     }
     for &i in &front {
         let p = &points[i];
-        svg.open(if p.knee.is_some() { "knee" } else { "front" }, &p.label);
+        svg.open(if p.is_knee() { "knee" } else { "front" }, &p.label);
         let (mark, r, paint) = front_look(p.knee);
         svg.mark(mark, place(p), r, &paint);
         svg.close();
     }
     // The most complex first: its label can go to the right, which leaves the rest room above.
-    for p in front.iter().rev().map(|&i| &points[i]).filter(|p| p.knee.is_some()) {
+    for p in front.iter().rev().map(|&i| &points[i]).filter(|p| p.is_knee()) {
         if let Some(label) = Label::fit(&p.label, place(p), &taken) {
             label.draw(&mut svg);
             label.take(&mut taken);
@@ -138,9 +139,9 @@ fn other_look(feasible: bool) -> (Mark, f64, Paint) {
     }
 }
 
-fn front_look(knee: Option<KneeKind>) -> (Mark, f64, Paint) {
-    match knee {
-        Some(kind) => (kind.mark(), 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
+fn front_look(knee: Knee) -> (Mark, f64, Paint) {
+    match knee_look(knee) {
+        Some((_, mark)) => (mark, 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
         None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
     }
 }
@@ -148,15 +149,15 @@ fn front_look(knee: Option<KneeKind>) -> (Mark, f64, Paint) {
 fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> {
     let mut entries = Vec::new();
     let mut add = |look: (Mark, f64, Paint), words| entries.push((Key::Mark(look.0, look.1, look.2), words));
-    if front.iter().any(|&i| points[i].knee.is_none()) {
-        add(front_look(None), "non-dominated");
+    if front.iter().any(|&i| !points[i].is_knee()) {
+        add(front_look(Knee::default()), "non-dominated");
     }
-    let kinds = [KneeKind::Both, KneeKind::Angle, KneeKind::Utility];
-    let present = |kind: &KneeKind| front.iter().any(|&i| points[i].knee == Some(*kind));
-    let present: Vec<KneeKind> = kinds.into_iter().filter(present).collect();
+    let kinds = [(true, true), (true, false), (false, true)].map(|(angle, utility)| Knee { angle, utility });
+    let present: Vec<Knee> = kinds.into_iter().filter(|kind| front.iter().any(|&i| points[i].knee == *kind)).collect();
     for &kind in &present {
-        let only = kind == KneeKind::Both && present.len() == 1;
-        add(front_look(Some(kind)), if only { "knee" } else { kind.words() });
+        let only = kind == kinds[0] && present.len() == 1;
+        let words = knee_look(kind).map_or("", |(words, _)| words);
+        add(front_look(kind), if only { "knee" } else { words });
     }
     let others = || points.iter().enumerate().filter(|(i, _)| !front.contains(i)).map(|(_, p)| p);
     if others().any(|p| p.feasible) {
@@ -173,17 +174,20 @@ mod tests {
     use super::*;
     use crate::chart::check::read;
 
-    fn point(nodes: u32, f2: f64, feasible: bool, knee: Option<KneeKind>, label: &str) -> ParetoPoint {
+    const NONE: Knee = Knee { angle: false, utility: false };
+    const BOTH: Knee = Knee { angle: true, utility: true };
+
+    fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
         ParetoPoint { nodes, f2, feasible, knee, label: label.to_owned() }
     }
 
     fn sample() -> Vec<ParetoPoint> {
         vec![
-            point(7, 0.0140, true, None, "ANDN(x1,x2)"),
-            point(3, 0.31, true, None, "XOR(x1,x2)"),
-            point(5, 0.0152, true, Some(KneeKind::Both), "XNOR(NAND(x1,x1),x2)"),
-            point(5, 0.2, true, None, "a & b <c>"),
-            point(9, 0.1, false, None, ""),
+            point(7, 0.0140, true, NONE, "(ANDN x1 x2)"),
+            point(3, 0.31, true, NONE, "(XOR x1 x2)"),
+            point(5, 0.0152, true, BOTH, "(XNOR (NAND x1 x1) x2)"),
+            point(5, 0.2, true, NONE, "a & b <c>"),
+            point(9, 0.1, false, NONE, ""),
         ]
     }
 
@@ -198,7 +202,7 @@ mod tests {
         let svg = pareto(&sample(), "T & <1>", Some(&reference)).unwrap();
         assert_eq!(svg, pareto(&sample(), "T & <1>", Some(&reference)).unwrap());
         let document = read(&svg);
-        assert!(document.says("XNOR(NAND(x1,x1),x2)"));
+        assert!(document.says("(XNOR (NAND x1 x1) x2)"));
         assert!(document.says("perfect circle"));
         assert!(document.says("T & <1>"));
         assert_eq!(document.count("class=\"knee\""), 1);
@@ -208,15 +212,15 @@ mod tests {
 
     #[test]
     fn one_point_and_zero_error_can_be_drawn() {
-        read(&pareto(&[point(1, 0.0, true, None, "x1")], "", None).unwrap());
-        read(&pareto(&[point(1, 0.0, true, None, "x1"), point(1, 3.0, true, None, "")], "", None).unwrap());
+        read(&pareto(&[point(1, 0.0, true, NONE, "x1")], "", None).unwrap());
+        read(&pareto(&[point(1, 0.0, true, NONE, "x1"), point(1, 3.0, true, NONE, "")], "", None).unwrap());
     }
 
     #[test]
     fn a_front_without_a_feasible_model_shows_the_infeasible_ones_and_says_so() {
-        let knee = Some(KneeKind::Both);
+        let knee = BOTH;
         let document =
-            read(&pareto(&[point(3, 0.1, false, knee, ""), point(5, 2.0, false, None, "")], "", None).unwrap());
+            read(&pareto(&[point(3, 0.1, false, knee, ""), point(5, 2.0, false, NONE, "")], "", None).unwrap());
         assert!(document.says("no model is feasible") && document.says("infeasible"));
         assert_eq!(document.count("class=\"knee\""), 0);
         assert_eq!(document.count("stroke=\"#B0B0B0\""), 2 * (2 + 1), "two strokes each, and one in the legend");

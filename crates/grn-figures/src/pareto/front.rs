@@ -11,7 +11,7 @@ use crate::pareto::data::{ParetoPoint, Reference};
 /// Indices of the feasible points that no other dominates, one for each complexity, simplest first.
 pub(crate) fn front(points: &[ParetoPoint]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].feasible).collect();
-    let knee_last = |i: usize| points[i].knee.is_none();
+    let knee_last = |i: usize| !points[i].is_knee();
     order.sort_by(|&a, &b| {
         let (p, q) = (&points[a], &points[b]);
         p.nodes.cmp(&q.nodes).then(p.f2.total_cmp(&q.f2)).then(knee_last(a).cmp(&knee_last(b))).then(a.cmp(&b))
@@ -23,7 +23,7 @@ pub(crate) fn front(points: &[ParetoPoint]) -> Vec<usize> {
         keep
     });
     // A knee the caller chose is shown even if this rule would not have it.
-    for i in (0..points.len()).filter(|&i| points[i].knee.is_some() && points[i].feasible) {
+    for i in (0..points.len()).filter(|&i| points[i].is_knee()) {
         if !order.contains(&i) {
             order.push(i);
         }

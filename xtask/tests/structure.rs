@@ -217,7 +217,9 @@ fn no_two_rooms_import_each_other() {
 fn circles_are_found() {
     let graph = |edges: &[(u8, u8)]| {
         let mut graph: BTreeMap<u8, BTreeSet<u8>> = BTreeMap::new();
-        edges.iter().for_each(|&(from, to)| drop(graph.entry(from).or_default().insert(to)));
+        for &(from, to) in edges {
+            graph.entry(from).or_default().insert(to);
+        }
         graph
     };
     assert_eq!(circle(&graph(&[(1, 2), (2, 3), (1, 3)])), None);

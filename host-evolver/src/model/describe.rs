@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn one_model_has_one_notation_with_all_digits_four_or_none() {
         let network = |text: &str| text.parse::<Tree>().unwrap().network(1.0).unwrap();
-        let text = "(XNOR[0.92561234] (NAND[0.5] x1 x1) x2)";
+        let text = "(XNOR[0.92561] (NAND[0.5] x1 x1) x2)";
         let tree: Tree = text.parse().unwrap();
         assert_eq!((tree.to_string(), expression(&network(text), Digits::All)), (text.into(), text.into()));
         let four = "(XNOR[0.9256] (NAND[0.5000] x1 x1) x2)";

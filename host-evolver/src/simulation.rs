@@ -187,6 +187,6 @@ impl<'s> PatternRuler<'s> {
         let longest = self.field.target_width() / 4.0;
         let walls = self.scenario.walls();
         let found = pattern.nearest_candidate(self.model.network(), &self.field, &targets, walls, start, longest)?;
-        Some((found.point - start).length() * self.scale)
+        Some((found - start).length() * self.scale)
     }
 }

@@ -19,7 +19,7 @@
 //! | [`trace`] | a recorded run |
 //! | [`metrics`] | what a recorded run is worth |
 //! | [`flash`] | a robot's flash, with power loss |
-//! | [`link`] | the host's side of the link to a robot, real or simulated |
+//! | [`link`] | robots behind a link as parts of a swarm: emulated, on a bad wire |
 //!
 //! Results are the same bits on every machine: single-threaded, seeded, and without the platform's transcendental
 //! functions.

@@ -5,7 +5,7 @@ use crate::geometry::{Edge, length_squared};
 use crate::random::Stream;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_BEARINGS_DEG, PROXIMITY_RANGE, PROXIMITY_SENSORS};
-use grn_core::robot::percept::{Millimetres, Percept, Sighting};
+use grn_core::robot::{Millimetres, Percept, Sighting};
 use serde::{Deserialize, Serialize};
 
 /// Sensor noise: the half-widths of triangular distributions around the truth (the standard deviation is 1/√6 of the

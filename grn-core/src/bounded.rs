@@ -23,3 +23,8 @@ mod tests {
         assert_eq!(list, [0, 1, 2]);
     }
 }
+
+/// The first of the largest numbers: its index and itself; (0, 0) for none.
+pub(crate) fn largest_of(numbers: impl Iterator<Item = u32>) -> (usize, u32) {
+    (0..).zip(numbers).fold((0, 0), |best, next| if next.1 > best.1 { next } else { best })
+}

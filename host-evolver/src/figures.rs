@@ -1,8 +1,7 @@
 //! From models, worlds and runs to the plain data that figures are drawn from.
 
+use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{FrontMember, Individual, Knee};
-use crate::objective::{Contours, Model, Snapshot, Tracer, World};
-use crate::report::{self, FigureError, KneeKind, Window};
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
 use firmware_sim::metrics::largest_gap;
@@ -11,6 +10,7 @@ use firmware_sim::trace::{Frame, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::BODY_RADIUS;
+use grn_figures::{FigureError, KneeKind, Window};
 
 fn pair(point: Point<f64>) -> [f64; 2] {
     [point.x, point.y]
@@ -42,7 +42,7 @@ const NEARBY_NODES: usize = 3;
 /// # Errors
 /// An empty front.
 pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> Result<String, FigureError> {
-    let point = |individual: &Individual, knee: Option<KneeKind>| report::ParetoPoint {
+    let point = |individual: &Individual, knee: Option<KneeKind>| grn_figures::ParetoPoint {
         nodes: individual.tree.size() as u32,
         f2: individual.f2,
         feasible: individual.is_feasible(),
@@ -64,10 +64,10 @@ pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> 
 ///
 /// # Errors
 /// No feasible point, or numbers that cannot be drawn.
-pub fn pareto_of(points: &[report::ParetoPoint], ring: &Ring) -> Result<String, FigureError> {
+pub fn pareto_of(points: &[grn_figures::ParetoPoint], ring: &Ring) -> Result<String, FigureError> {
     let best = perfect_circle(ring);
-    let reference = report::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
-    report::pareto(points, "", Some(&reference))
+    let reference = grn_figures::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
+    grn_figures::pareto(points, "", Some(&reference))
 }
 
 fn knee_kind(member: &FrontMember) -> Option<KneeKind> {
@@ -83,11 +83,11 @@ fn knee_kind(member: &FrontMember) -> Option<KneeKind> {
 /// The expression without θ and in function notation: `XNOR(NAND(x1, x1), x2)`.
 fn short_expression(individual: &Individual) -> String {
     let Ok(network) = individual.tree.network(1.0) else { return individual.tree.to_string() };
-    fn write(tree: &report::SyntaxTree) -> String {
+    fn write(tree: &grn_figures::SyntaxTree) -> String {
         let operands: Vec<String> = tree.children.iter().map(write).collect();
         if operands.is_empty() { tree.label.clone() } else { format!("{}({})", tree.label, operands.join(", ")) }
     }
-    write(&crate::describe::syntax_tree(&network))
+    write(&crate::model::describe::syntax_tree(&network))
 }
 
 /// The pattern at each snapshot.
@@ -99,7 +99,7 @@ pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
     let scenario = world.scenario();
     let mut tracer = Tracer::with_leaks(world);
     let stride = scenario.snapshots().div_ceil(MOST_PANELS);
-    let panel = |(index, (snapshot, contours)): (usize, (&Snapshot, Contours))| report::Panel {
+    let panel = |(index, (snapshot, contours)): (usize, (&Snapshot, Contours))| grn_figures::Panel {
         title: format!("snapshot {index}"),
         window: None,
         walls: walls(scenario),
@@ -107,7 +107,7 @@ pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
             .targets
             .iter()
             .zip(&contours.enclosed)
-            .map(|(&target, &enclosed)| report::Target { position: pair(target), enclosed })
+            .map(|(&target, &enclosed)| grn_figures::Target { position: pair(target), enclosed })
             .collect(),
         contours: contours.rings.iter().map(|ring| pairs(ring)).collect(),
         leak_outlines: contours.leaks.iter().map(|outline| pairs(outline)).collect(),
@@ -116,7 +116,7 @@ pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
     let panels = tracer.trace_all(model).enumerate().step_by(stride).map(panel).collect();
     let [width, height] = scenario.region();
     let region = Window { min: [0.0, 0.0], max: [width, height] };
-    report::pattern(&report::PatternFigure { region, paths: paths(scenario), panels, columns: None })
+    grn_figures::pattern(&grn_figures::PatternFigure { region, paths: paths(scenario), panels, columns: None })
 }
 
 /// How many moments of a run are drawn with robots and pattern.
@@ -142,7 +142,7 @@ pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<
     let world = scenario.scaled(scale);
     let window = window_around(trajectories.iter().flatten().copied(), 1.5 * simulation.ring_radius_m);
     let ruler = PatternRuler::new(blob, scenario).ok();
-    report::trace(&report::TraceFigure {
+    grn_figures::trace(&grn_figures::TraceFigure {
         window,
         walls: walls(&world),
         target_paths: paths(&world),
@@ -179,7 +179,7 @@ fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> f64 {
     errors.get(errors.len() / 2).copied().unwrap_or(0.0)
 }
 
-fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<report::Instant> {
+fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {
     let seconds = (frames.len().saturating_sub(1) as f64 / per_second).floor();
     let whole_second = |instant: usize| (seconds * instant as f64 / (INSTANTS - 1) as f64).round();
     let ticks: Vec<usize> = (0..INSTANTS).map(|instant| (whole_second(instant) * per_second) as usize).collect();
@@ -197,12 +197,12 @@ fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &B
         .flat_map(|model| tracer.trace_all(model).map(|(_, contours)| contours).collect::<Vec<_>>())
         .collect();
     let scaled = |ring: &Vec<Point<f64>>| ring.iter().map(|point| [point.x * scale, point.y * scale]).collect();
-    let instant = |(place, &tick): (usize, &usize)| report::Instant {
+    let instant = |(place, &tick): (usize, &usize)| grn_figures::Instant {
         time: tick as f64 / per_second,
         robots: frames[tick]
             .robots
             .iter()
-            .map(|robot| report::Pose {
+            .map(|robot| grn_figures::Pose {
                 position: pair(metres(robot.position_um)),
                 heading: heading(robot.heading_q14),
             })

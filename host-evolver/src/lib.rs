@@ -2,23 +2,14 @@
 
 pub mod campaign;
 pub mod cli;
-pub mod deploy;
-pub mod describe;
-pub mod eh_grn;
 #[cfg(unix)]
 pub mod emulation;
+pub mod evaluation;
 pub mod evolve;
 pub mod figures;
 pub mod files;
-pub mod objective;
-pub mod objectives;
-pub mod port;
-pub mod published;
-pub mod report;
+pub mod model;
 pub mod run;
-pub mod search;
+pub mod sectors;
 pub mod simulation;
 pub mod slot_file;
-pub mod statistics;
-pub mod tree;
-pub mod variation;

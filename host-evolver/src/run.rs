@@ -3,13 +3,13 @@
 //! Everything in it is written whole or not at all and depends only on scenario and settings, so an interrupted and
 //! resumed run leaves the same bytes as one left alone.
 
-use crate::deploy;
-use crate::describe;
+use crate::evaluation::{Model, World};
 use crate::evolve::{FrontMember, Milestone, Search, Settings, State};
 use crate::figures;
 use crate::files::{self, FileError};
-use crate::objective::{Model, World};
-use crate::report;
+use crate::model::deploy;
+use crate::model::describe;
+
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde::{Deserialize, Serialize};
@@ -59,7 +59,7 @@ pub enum RunError {
     /// A file in it.
     File(FileError),
     /// A picture could not be drawn.
-    Figure(&'static str, report::FigureError),
+    Figure(&'static str, grn_figures::FigureError),
 }
 
 impl fmt::Display for RunError {
@@ -164,8 +164,8 @@ impl RunFolder {
         let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
         files::write_blob(&self.path("knee.grn"), &knee)?;
         self.draw("pareto.svg", figures::pareto(&front, &search.state().population, &world.scenario().ring()))?;
-        self.draw("tree.svg", report::tree(&describe::syntax_tree(&knee.network)))?;
-        self.draw("grn.svg", report::grn(&describe::graph(&knee.network)))?;
+        self.draw("tree.svg", grn_figures::tree(&describe::syntax_tree(&knee.network)))?;
+        self.draw("grn.svg", grn_figures::grn(&describe::graph(&knee.network)))?;
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
             self.draw("pattern.svg", figures::pattern(world, &model))?;
         }
@@ -176,7 +176,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// A picture that could not be drawn or written.
-    pub fn draw(&self, name: &'static str, figure: Result<String, report::FigureError>) -> Result<(), RunError> {
+    pub fn draw(&self, name: &'static str, figure: Result<String, grn_figures::FigureError>) -> Result<(), RunError> {
         let svg = figure.map_err(|error| RunError::Figure(name, error))?;
         Ok(files::write(&self.path(name), svg)?)
     }

@@ -1,6 +1,6 @@
 //! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
 
-use crate::objective::Model;
+use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
 use firmware_sim::config::{ConfigError, SwarmConfig};
 use firmware_sim::metrics::{Metrics, MetricsOptions};

@@ -1,11 +1,10 @@
 //! A slot as a file for a programmer: Intel HEX, plain binary, and the commands that bring them onto a robot.
 
 use crate::files::{self, FileError};
+use crate::sectors::Sector;
 use grn_core::robot::slots;
 use std::path::{Path, PathBuf};
 
-/// Where the first slot of an e-puck2 begins in its flash.
-pub const DEFAULT_ADDRESS: &str = "0x080C0000";
 /// Bytes in a line of a HEX file.
 const HEX_LINE: usize = 16;
 
@@ -30,12 +29,14 @@ pub struct Written {
 }
 
 impl SlotFile {
-    /// A blob, confirmed, for the slot at `address`; of two slots the robot takes that with the higher sequence number.
+    /// A blob, confirmed, for the slot in `sector`; of two slots the robot takes that with the higher sequence number.
     ///
     /// # Errors
     /// What is wrong with the blob.
-    pub fn new(blob: &[u8], address: u32, sequence: u32) -> Result<Self, slots::SlotError> {
-        Ok(SlotFile { bytes: slots::image(blob, sequence)?.to_vec(), address })
+    pub fn new(blob: &[u8], sector: Sector, sequence: u32) -> Result<Self, slots::SlotError> {
+        // The smallest sector has 16 KiB.
+        const { assert!(slots::MIN_SLOT <= 16 * 1024) };
+        Ok(SlotFile { bytes: slots::image(blob, sequence)?.to_vec(), address: sector.start() })
     }
 
     /// As Intel HEX with 32-bit addresses.

@@ -90,17 +90,69 @@ fn files_for_a_programmer_hold_the_slot() -> Outcome {
     let blob = model("nand-xnor");
     let flash = |more: &[&str]| grn(&[&["flash", &blob, "--out", place, "--sequence", "9"], more].concat());
     let lines =
-        ["0x080c0000 to 0x080c", "upload number 9", "arm-none-eabi-gdb", "dfu-util -d 0483:df11 -a 0 -s 0x080c0000"];
+        ["0x08080000 to 0x0808", "upload number 9", "arm-none-eabi-gdb", "dfu-util -d 0483:df11 -a 0 -s 0x08080000"];
     assert_answer(&flash(&["--dry-run"])?, 0, &lines);
     assert!(!out.exists());
     assert_answer(&flash(&[])?, 0, &lines);
     let image = slots::image(&std::fs::read(&blob)?, 9)?;
     assert_eq!(std::fs::read(out.join("slot.bin"))?, image.as_slice());
     let hex = std::fs::read_to_string(out.join("slot.hex"))?;
-    assert!(hex.starts_with(":02000004080CE6\n:10000000"), "{hex}");
+    assert!(hex.starts_with(":020000040808EA\n:10000000"), "{hex}");
     assert!(std::fs::read_to_string(out.join("flash.gdb"))?.contains("slot.hex"));
-    assert_answer(&flash(&["--address", "0x080E0000", "--dry-run"])?, 0, &["0x080e0000 to"]);
-    assert_answer(&flash(&["--address", "0x3"])?, 2, &["0x3", "multiple of 8"]);
+    for slot in ["0x080A0000", "0x08008000", "0x0800C000"] {
+        assert_answer(&flash(&["--address", slot, "--dry-run"])?, 0, &[&format!("{} to", slot.to_lowercase())]);
+    }
+    Ok(())
+}
+
+#[test]
+fn addresses_that_wrap_or_begin_no_sector_are_refused() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("files");
+    let place = out.to_str().ok_or("not UTF-8")?;
+    let cases = [
+        ("0x3", "0x08000000 to 0x080FFFFF"),
+        ("0xFFFFFFF8", "0x08000000 to 0x080FFFFF"),
+        ("0x08100000", "0x08000000 to 0x080FFFFF"),
+        ("0x20000000", "0x08000000 to 0x080FFFFF"),
+        ("0x100000000", "no address of 32 bits"),
+        ("0x080BFFF8", "inside sector 9, which begins at 0x080A0000"),
+        ("0x08080004", "inside sector 8, which begins at 0x08080000"),
+    ];
+    for (address, words) in cases {
+        for force in [&[][..], &["--force"]] {
+            let common = ["flash", &model("nand-xnor"), "--out", place, "--address", address];
+            let refused = grn(&[&common[..], force].concat())?;
+            assert_answer(&refused, 2, &["--address", address, words, "give 0x08080000"]);
+        }
+    }
+    assert!(!out.exists());
+    Ok(())
+}
+
+#[test]
+fn sectors_that_the_stock_firmware_uses_need_force_and_a_warning() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let out = folder.path().join("files");
+    let place = out.to_str().ok_or("not UTF-8")?;
+    let cases = [
+        ("0x080C0000", "sector 10", "crashes at every start until this sector is erased"),
+        ("0x080E0000", "sector 11", "parameters"),
+        ("0x08000000", "sector 0", "program"),
+        ("0x08040000", "sector 6", "program"),
+    ];
+    for (address, sector, why) in cases {
+        let common = ["flash", &model("nand-xnor"), "--out", place, "--sequence", "9", "--address", address];
+        for more in [&[][..], &["--dry-run"]] {
+            let refused = grn(&[&common[..], more].concat())?;
+            assert_answer(&refused, 2, &[address, sector, why, "--force", "0x08080000"]);
+        }
+        assert!(!out.exists());
+        let rehearsed = grn(&[&common[..], &["--force", "--dry-run"]].concat())?;
+        assert_answer(&rehearsed, 0, &[&format!("{} to", address.to_lowercase())]);
+        let warning = text(&rehearsed.stderr);
+        assert!(warning.contains("warning") && warning.contains(why), "{warning}");
+    }
     Ok(())
 }
 

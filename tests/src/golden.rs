@@ -3,9 +3,9 @@
 use firmware_sim::scenario::Morphogen;
 use grn_core::field::Kernel;
 use grn_core::scalar::Q8_24;
-use host_evolver::deploy;
 use host_evolver::files::blob_bytes;
-use host_evolver::published::PUBLISHED;
+use host_evolver::model::deploy;
+use host_evolver::model::published::PUBLISHED;
 use std::path::PathBuf;
 
 /// A path in the repository.

@@ -3,10 +3,10 @@
 
 use firmware_sim::{Scenario, SwarmConfig};
 use grn_core::network::Network;
-use host_evolver::deploy;
-use host_evolver::published::PUBLISHED;
+use host_evolver::model::deploy;
+use host_evolver::model::published::PUBLISHED;
+use host_evolver::model::tree::Tree;
 use host_evolver::simulation::{Number, Simulation, simulate};
-use host_evolver::tree::Tree;
 use std::ops::ControlFlow;
 use std::thread;
 

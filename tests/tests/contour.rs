@@ -4,9 +4,9 @@
 use firmware_sim::geometry::{Bounds, nearest_on_segment};
 use firmware_sim::scenario::Scenario;
 use grn_core::geometry::{Point, Vector};
+use host_evolver::evaluation::{Contours, Evaluator, Model, Snapshot, Tracer, World};
 use host_evolver::evolve::{Advance, Search, Settings};
-use host_evolver::objective::{Contours, Judge, Model, Snapshot, Tracer, World};
-use host_evolver::published::PUBLISHED;
+use host_evolver::model::published::PUBLISHED;
 use plain::Plain;
 use std::sync::atomic::AtomicBool;
 
@@ -89,14 +89,14 @@ fn fast_contours_are_the_plain_ones() {
                     continue;
                 };
                 finer += usize::from(level > 0);
-                f2 += plain::judge(world, snapshot, &plain)[0];
+                f2 += plain::evaluate(world, snapshot, &plain)[0];
                 let apart = farthest(&fast.rings, &plain.rings).max(farthest(&plain.rings, &fast.rings));
                 if apart > allowed(world, name) {
                     faults.push(format!("{place}: {apart:.4} m apart"));
                 }
                 largest = largest.max(apart);
             }
-            let difference = (f2 / world.snapshots().len() as f64 - Judge::new(world).judge(model).f2).abs();
+            let difference = (f2 / world.snapshots().len() as f64 - Evaluator::new(world).evaluate(model).f2).abs();
             largest_f2 = largest_f2.max(difference);
             if difference > F2_TOLERANCE {
                 faults.push(format!("{name} in {}: f2 off by {difference}", world.scenario().name()));
@@ -111,11 +111,11 @@ fn fast_contours_are_the_plain_ones() {
 fn an_evaluation_depends_on_nothing_but_the_model() {
     for world in &worlds() {
         let models = models(world);
-        let mut kept = Judge::new(world);
-        let forward: Vec<_> = models.iter().map(|(_, model)| kept.judge(model)).collect();
+        let mut kept = Evaluator::new(world);
+        let forward: Vec<_> = models.iter().map(|(_, model)| kept.evaluate(model)).collect();
         for (place, (name, model)) in models.iter().enumerate().rev() {
-            assert_eq!(kept.judge(model), forward[place], "{name} judged again");
-            assert_eq!(Judge::new(world).judge(model), forward[place], "{name} judged afresh");
+            assert_eq!(kept.evaluate(model), forward[place], "{name} evaluated again");
+            assert_eq!(Evaluator::new(world).evaluate(model), forward[place], "{name} evaluated afresh");
         }
     }
 }

@@ -2,10 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "what only tests call")]
 
 use firmware_sim::flash::SimulatedFlash;
+use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::faults::{Faults, FaultyWire};
-use firmware_sim::link::flashing::{Flashed, flash};
-use firmware_sim::link::wire::LocalRobot;
-use firmware_sim::link::{Client, LinkError, Patience, RemoteBrain, Wire};
 use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::{self, Frame, Receiver};
@@ -18,6 +16,9 @@ use grn_core::robot::link::server::TRIAL_TICKS;
 use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::slots::{MAX_BLOB, Stage};
 use grn_core::robot::{Controller, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_link::flashing::{Flashed, flash};
+use grn_link::wire::LocalRobot;
+use grn_link::{Client, LinkError, Patience, Wire};
 use grn_tests::decoder::sealed;
 use grn_tests::robots::{LAYOUT, Shipped, blob_of_genes, empty_flash};
 use rand::{RngExt, SeedableRng};

@@ -2,9 +2,8 @@
 //! and runs these tests.
 #![allow(clippy::unwrap_used, reason = "what only tests call")]
 
-use firmware_sim::link::flashing::flash;
+use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::qemu::Emulator;
-use firmware_sim::link::{Client, Patience, RemoteBrain};
 use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
@@ -12,6 +11,8 @@ use grn_core::robot::Controller;
 use grn_core::robot::link::message::{RollBack, Status};
 use grn_core::robot::slots::Stage;
 use grn_core::scalar::{Q8_24, Scalar};
+use grn_link::flashing::flash;
+use grn_link::{Client, Patience};
 use grn_tests::robots::Shipped;
 use std::path::{Path, PathBuf};
 

@@ -6,8 +6,8 @@ use grn_core::field::{Field, Kernel};
 use grn_core::network::Network;
 use grn_core::pattern::Pattern;
 use grn_core::scalar::Scalar;
-use host_evolver::objective::{Model, Tracer, World};
-use host_evolver::published::PUBLISHED;
+use host_evolver::evaluation::{Model, Tracer, World};
+use host_evolver::model::published::PUBLISHED;
 use serde_json::Value;
 
 fn golden() -> Value {

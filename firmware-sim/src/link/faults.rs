@@ -1,8 +1,8 @@
 //! A wire with faults, as ordinary middleware between a client and any other wire.
 
-use super::wire::Wire;
 use crate::random::{Component, Stream};
 use core::time::Duration;
+use grn_link::Wire;
 use std::io;
 
 /// What goes wrong, each as a probability in [0, 1] for each byte in each direction.

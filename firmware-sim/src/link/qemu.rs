@@ -1,7 +1,7 @@
 //! A robot's image in QEMU, behind a link.
 
-use super::wire::Wire;
 use core::time::Duration;
+use grn_link::Wire;
 use std::io;
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,10 @@
 //! Processor in the loop: a robot's controller on another machine, asked through the link.
 
-use super::client::{Client, LinkError};
-use super::flashing;
-use super::wire::Wire;
 use crate::brain::{Brain, BrainError};
 use grn_core::blob::Identity;
 use grn_core::robot::link::message::Reset;
 use grn_core::robot::{Command, Percept};
+use grn_link::{Client, LinkError, Wire, flashing};
 
 /// A controller behind a link.
 pub struct RemoteBrain<W> {

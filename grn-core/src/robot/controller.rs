@@ -3,9 +3,10 @@
 use super::drive::{Drive, heading, reflex};
 use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
-use super::message::Message;
+use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Bearing, Motion};
-use super::percept::{Command, Millimetres, Percept};
+use super::percept::{Command, Percept};
+use super::position::Millimetres;
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
 use crate::field::{Field, Morphogens};
@@ -16,8 +17,6 @@ use crate::scalar::{Dual, Scalar};
 use core::fmt;
 use heapless::Vec;
 
-/// A robot speaks every so many ticks, a quarter of a second, each in its own turn. In that time it moves 3 cm.
-pub(super) const BROADCAST_PERIOD: u32 = 8;
 /// The most RK4 steps in one tick.
 const MAX_STEPS_PER_TICK: f32 = 64.0;
 

@@ -1,11 +1,11 @@
 //! What a robot knows of the world: its own sightings and what others broadcast, with their age.
 
-use super::controller::BROADCAST_PERIOD;
 use super::epuck2::TICKS_PER_SECOND;
-use super::message::{MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
+use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
-use super::percept::{MAX_TARGETS, Millimetres, Percept, Sighting};
+use super::percept::{MAX_TARGETS, Percept, Sighting};
+use super::position::{Millimetres, metres, millimetres};
 use crate::bounded::filled;
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
@@ -35,31 +35,6 @@ pub struct KnownTarget<S> {
     /// Estimated velocity, metres per second.
     pub velocity: Vector<S>,
     age: u8,
-}
-
-/// The squared distance between two places, mm², at most what a `u32` holds (65 m).
-pub(super) fn squared_distance(a: Millimetres, b: Millimetres) -> u32 {
-    // The square of 16 bits' difference fits 32 bits without a sign.
-    let square = |a: i16, b: i16| {
-        let difference = i32::from(a) - i32::from(b);
-        difference.wrapping_mul(difference) as u32
-    };
-    square(a.x, b.x).saturating_add(square(a.y, b.y))
-}
-
-/// The first of the largest numbers: its index and itself; (0, 0) for none.
-pub(super) fn largest_of(numbers: impl Iterator<Item = u32>) -> (usize, u32) {
-    (0..).zip(numbers).fold((0, 0), |best, next| if next.1 > best.1 { next } else { best })
-}
-
-pub(super) fn metres<S: Scalar>(position: Millimetres) -> Point<S> {
-    let metre = |mm: i16| S::from_millionths(i32::from(mm) * 1000);
-    Vector::new(metre(position.x), metre(position.y))
-}
-
-fn millimetres<S: Scalar>(position: Point<S>) -> Millimetres {
-    let mm = |metres: S| metres.times_to_i32(1000).clamp(-32_767, 32_767) as i16;
-    Millimetres { x: mm(position.x), y: mm(position.y) }
 }
 
 impl<S: Scalar> Knowledge<S> {

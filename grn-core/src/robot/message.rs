@@ -1,9 +1,11 @@
 //! What robots tell each other by radio.
 
-use super::percept::Millimetres;
+use super::position::Millimetres;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+/// A robot speaks every so many ticks, a quarter of a second, each in its own turn. In that time it moves 3 cm.
+pub(super) const BROADCAST_PERIOD: u32 = 8;
 /// The most obstacle points in one message.
 pub const MAX_REPORTED_OBSTACLES: usize = 4;
 

@@ -14,8 +14,10 @@ mod motion;
 mod neighbours;
 mod obstacles;
 pub mod percept;
+mod position;
 pub mod slots;
 
 pub use controller::{Controller, LoadError};
 pub use message::{Message, ObstacleReport, TargetReport};
-pub use percept::{Command, Millimetres, Percept, Sighting};
+pub use percept::{Command, Percept, Sighting};
+pub use position::Millimetres;

@@ -1,8 +1,8 @@
 //! The neighbours a robot keeps in mind: the nearest ones, each where it was when last heard.
 
 use super::epuck2::TICKS_PER_SECOND;
-use super::knowledge::{largest_of, metres, squared_distance};
-use super::percept::Millimetres;
+use super::position::{Millimetres, metres, squared_distance};
+use crate::bounded::largest_of;
 use crate::geometry::Point;
 use crate::scalar::Scalar;
 use heapless::Vec;

@@ -1,10 +1,9 @@
 //! The obstacle points a robot keeps in mind: the nearest ones it saw or heard of, with their age, one in every square
 //! of 32 mm: a point seen again and again, a few millimetres off, must not crowd out the others.
 
-use super::knowledge::{largest_of, metres, squared_distance};
 use super::message::ObstacleReport;
-use super::percept::Millimetres;
-use crate::bounded::filled;
+use super::position::{Millimetres, metres, squared_distance};
+use crate::bounded::{filled, largest_of};
 use crate::geometry::Point;
 use crate::scalar::Scalar;
 use heapless::Vec;

@@ -2,6 +2,7 @@
 
 use super::epuck2::PROXIMITY_SENSORS;
 use super::message::Message;
+use super::position::Millimetres;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -11,15 +12,6 @@ pub const MAX_TARGETS: usize = 4;
 pub const MAX_SEEN_OBSTACLES: usize = 8;
 /// The most messages delivered to a robot in one tick; a radio keeps the strongest.
 pub const MAX_HEARD: usize = 8;
-
-/// A position in the world, millimetres, within ±32.7 m.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Millimetres {
-    /// East.
-    pub x: i16,
-    /// North.
-    pub y: i16,
-}
 
 /// A target seen with the robot's own sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

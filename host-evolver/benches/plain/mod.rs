@@ -3,7 +3,7 @@
 
 use grn_core::geometry::{Point, Vector};
 use grn_core::scalar::Arithmetic;
-use host_evolver::objective::{CANDIDATES_PER_RING, Model, Snapshot, World};
+use host_evolver::evaluation::{CANDIDATES_PER_RING, Model, Snapshot, World};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What a plain grid shows.
@@ -162,7 +162,7 @@ impl Grid {
 }
 
 /// (f2, violation) of one snapshot by the paper's formula on the plain contour.
-pub fn judge(world: &World, snapshot: &Snapshot, plain: &Plain) -> [f64; 2] {
+pub fn evaluate(world: &World, snapshot: &Snapshot, plain: &Plain) -> [f64; 2] {
     let ring = world.scenario().ring();
     let sig = |x: f64, theta: f64| (ring.steepness * (x - theta)).logistic();
     let lost = plain.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64 / plain.enclosed.len() as f64;

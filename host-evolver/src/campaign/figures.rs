@@ -3,12 +3,13 @@
 use super::plan::{Plan, PlannedScenario, slug};
 use super::tables::{Measure, RunRow, Tables, TransferRow};
 use super::unit::{Moment, Unit};
+use crate::evaluation::{Model, World};
 use crate::figures::{pareto_of, pattern};
 use crate::files::{self, FileError, read_blob};
-use crate::objective::{Model, World};
-use crate::report::{self, FigureError};
-use crate::statistics::quartiles;
-use crate::{describe, report::KneeKind};
+use crate::model::describe;
+use grn_figures::FigureError;
+use grn_figures::KneeKind;
+use grn_optimisers::statistics::quartiles;
 use std::path::Path;
 
 /// Draws everything into the campaign's folder. Variations of a scenario are in the tables only, and so is what became of
@@ -28,10 +29,10 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
     ] {
         draw(name, boxes(plan, &scenarios, tables, measure))?;
     }
-    draw("convergence.svg", report::convergence(&convergence(plan, campaign)?))?;
+    draw("convergence.svg", grn_figures::convergence(&convergence(plan, campaign)?))?;
     for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
         let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
-        draw(&name, report::rates(figure))?;
+        draw(&name, grn_figures::rates(figure))?;
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -41,7 +42,7 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            let points = front.iter().map(|member| report::ParetoPoint {
+            let points = front.iter().map(|member| grn_figures::ParetoPoint {
                 nodes: member.nodes as u32,
                 f2: member.f2,
                 feasible: member.violation == 0.0,
@@ -57,8 +58,8 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
                 draw(&name("pareto"), pareto_of(&points.collect::<Vec<_>>(), &planned.scenario.ring()))?;
             }
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
-            draw(&name("tree"), report::tree(&describe::syntax_tree(&network)))?;
-            draw(&name("grn"), report::grn(&describe::graph(&network)))?;
+            draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)))?;
+            draw(&name("grn"), grn_figures::grn(&describe::graph(&network)))?;
             if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
                 draw(&name("pattern"), pattern(&world, &model))?;
             }
@@ -88,7 +89,7 @@ fn boxes(
         let violation = if is_knee { run.knee_violation } else { run.best_violation };
         (violation == 0.0).then(|| measure.of(run))
     };
-    let panel = |planned: &&PlannedScenario| report::BoxPanel {
+    let panel = |planned: &&PlannedScenario| grn_figures::BoxPanel {
         title: planned.scenario.name().into(),
         groups: plan
             .methods
@@ -96,15 +97,15 @@ fn boxes(
             .map(|method| {
                 let of_it = |run: &&RunRow| run.scenario == planned.scenario.name() && run.method == method.name;
                 let values = tables.runs.iter().filter(of_it).map(value).collect();
-                report::BoxGroup { label: method.name.clone(), values }
+                grn_figures::BoxGroup { label: method.name.clone(), values }
             })
             .collect(),
     };
     let panels = scenarios.iter().map(panel).collect();
-    report::boxes(&report::BoxFigure { panels, y_label: measure.words().into() })
+    grn_figures::boxes(&grn_figures::BoxFigure { panels, y_label: measure.words().into() })
 }
 
-fn convergence(plan: &Plan, campaign: &Path) -> Result<report::ConvergenceFigure, FileError> {
+fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceFigure, FileError> {
     let mut panels = Vec::new();
     for (scenario, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let mut series = Vec::new();
@@ -118,27 +119,27 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<report::ConvergenceFigure
                 Some((histories.first()?[moment].evaluations as u64, quartiles(&values)?))
             };
             let points = (0..moments).filter_map(point).collect();
-            series.push(report::ConvergenceSeries { label: planned_method.name.clone(), points });
+            series.push(grn_figures::ConvergenceSeries { label: planned_method.name.clone(), points });
         }
-        panels.push(report::ConvergencePanel { title: planned.scenario.name().into(), series });
+        panels.push(grn_figures::ConvergencePanel { title: planned.scenario.name().into(), series });
     }
-    Ok(report::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
+    Ok(grn_figures::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
 }
 
-fn rates(plan: &Plan, tables: &Tables) -> report::RatesFigure {
+fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
     let is_varied =
         |row: &TransferRow| plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer);
-    let mut groups: Vec<report::RateGroup> = Vec::new();
+    let mut groups: Vec<grn_figures::RateGroup> = Vec::new();
     for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1 && !is_varied(row)) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),
         };
-        let line = report::RateRow { label: row.method.clone(), rate: row.rate, interval: (row.low, row.high) };
+        let line = grn_figures::RateRow { label: row.method.clone(), rate: row.rate, interval: (row.low, row.high) };
         match groups.iter_mut().find(|group| group.title == title) {
             Some(group) => group.rows.push(line),
-            None => groups.push(report::RateGroup { title, rows: vec![line] }),
+            None => groups.push(grn_figures::RateGroup { title, rows: vec![line] }),
         }
     }
-    report::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() }
+    grn_figures::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() }
 }

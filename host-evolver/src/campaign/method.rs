@@ -1,10 +1,10 @@
 //! The ways to a model that a campaign can compare. Another is a variant of [`Method`] and its run.
 
-use crate::describe;
-use crate::eh_grn::{self, Progress, Structure};
+use crate::evaluation::World;
+use crate::evolve::eh_grn::{self, Progress, Structure};
 use crate::evolve::{Advance, Knee, Search, Settings};
-use crate::objective::World;
-use crate::variation::MotifSet;
+use crate::model::describe;
+use crate::model::variation::MotifSet;
 use grn_core::network::Network;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;

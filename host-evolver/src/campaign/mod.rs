@@ -18,8 +18,8 @@ pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
 pub use trial::Trial;
 pub use unit::Unit;
 
+use crate::evaluation::World;
 use crate::files::{self, FileError};
-use crate::objective::World;
 use rayon::prelude::*;
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! The campaign file: which scenarios, methods, models and transfers, and how many seeds.
 
 use super::method::Method;
+use crate::evaluation::Model;
 use crate::files::{self, FileError, read_blob};
-use crate::objective::Model;
 use firmware_sim::scenario::{RandomObstacles, Scenario};
 use grn_core::network::Network;
 use serde::Deserialize;

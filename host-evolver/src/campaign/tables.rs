@@ -5,7 +5,7 @@ use super::trial::Trial;
 use super::unit::Unit;
 use crate::evolve::front_hypervolume;
 use crate::files::{self, FileError};
-use crate::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
+use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

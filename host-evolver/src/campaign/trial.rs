@@ -2,8 +2,8 @@
 
 use super::plan::{Plan, slug};
 use super::unit::Unit;
+use crate::evaluation::{Evaluation, Evaluator, Model, World};
 use crate::files::{self, FileError, read_blob};
-use crate::objective::{Evaluation, Judge, Model, World};
 use firmware_sim::scenario::Scenario;
 use grn_core::network::Network;
 use serde::Deserialize;
@@ -89,13 +89,13 @@ impl<'p> Group<'p> {
 
     fn made(&self, world: usize, stop: &AtomicBool) -> Option<Vec<[String; 5]>> {
         let world = World::new(self.worlds[world].clone());
-        let mut judge = Judge::new(&world);
+        let mut evaluator = Evaluator::new(&world);
         let mut line = |candidate: &Candidate| {
             if stop.load(Ordering::Relaxed) {
                 return None;
             }
             let model = Model::new(&candidate.network, world.scenario().morphogen().level).ok();
-            let Evaluation { f2, violation } = model.map_or(Evaluation::NO_PATTERN, |model| judge.judge(&model));
+            let Evaluation { f2, violation } = model.map_or(Evaluation::NO_PATTERN, |model| evaluator.evaluate(&model));
             let Candidate { scenario, method, seed, .. } = candidate;
             Some([scenario.clone(), method.clone(), seed.to_string(), f2.to_string(), violation.to_string()])
         };

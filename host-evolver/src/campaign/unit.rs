@@ -2,10 +2,10 @@
 
 use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
-use crate::deploy::{self, DEFAULT_SCALE};
+use crate::evaluation::World;
 use crate::evolve::Knee;
 use crate::files::{self, FileError};
-use crate::objective::World;
+use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::run::FRONT_HEADER;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! `grn draw`.
 
 use super::{Answer, Failure, about, print, print_json};
+use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::figures;
 use crate::files::{self, read_blob};
-use crate::objective::{Contours, Model, Snapshot, Tracer, World};
 use firmware_sim::scenario::Scenario;
 use serde_json::{Value, json};
 use std::path::PathBuf;

@@ -2,12 +2,12 @@
 
 use super::simulate::{DEFAULT_ROBOTS, table, usual_config, watched, write_folder};
 use super::{Answer, Failure, about, interrupt, print};
-use crate::deploy::DEFAULT_SCALE;
+use crate::evaluation::World;
 use crate::evolve::{Advance, FrontMember, Search, Settings};
-use crate::objective::World;
+use crate::model::deploy::DEFAULT_SCALE;
+use crate::model::variation::MotifSet;
 use crate::run::{Manifest, RunFolder};
 use crate::simulation::Number;
-use crate::variation::MotifSet;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use indicatif::{ProgressBar, ProgressStyle};

@@ -1,15 +1,16 @@
 //! `grn flash`.
 
 use super::{Answer, Failure, about, print};
-use crate::port::Port;
-use crate::slot_file::{DEFAULT_ADDRESS, SlotFile};
-use firmware_sim::link::flashing::{self, Flashed, Progress};
-use firmware_sim::link::{Client, Patience};
+use crate::sectors::Sector;
+use crate::slot_file::SlotFile;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::MAX_WIRE;
 use grn_core::robot::link::message::{About, MAX_CHUNK, encode_request};
 use grn_core::robot::link::message::{Begin, Chunk};
+use grn_link::flashing::{self, Flashed, Progress};
+use grn_link::{Client, Patience, Port};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -33,9 +34,13 @@ pub struct Arguments {
     /// Instead, write slot.hex, slot.bin and flash.gdb for a programmer into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Address of the slot in the robot's memory, for --out.
-    #[arg(long, value_parser = address, default_value = DEFAULT_ADDRESS, conflicts_with = "to")]
-    address: u32,
+    /// Where the slot begins in the robot's flash, for --out: 0x08080000 or 0x080A0000 for the e-puck2's C firmware,
+    /// 0x08008000 or 0x0800C000 for grn's own image.
+    #[arg(long, default_value_t = Sector::DEFAULT, conflicts_with = "to")]
+    address: Sector,
+    /// Write the slot even where the robot's firmware keeps something else.
+    #[arg(long, conflicts_with = "to")]
+    force: bool,
     /// Number of this upload, for --out: the robot takes the slot with the higher one [default: seconds since 1970].
     #[arg(long, conflicts_with = "to")]
     sequence: Option<u32>,
@@ -45,16 +50,6 @@ pub struct Arguments {
     /// Only say what would be sent or written.
     #[arg(long)]
     dry_run: bool,
-}
-
-fn address(text: &str) -> Result<u32, String> {
-    let digits = text.strip_prefix("0x").or(text.strip_prefix("0X"));
-    let number = match digits {
-        Some(digits) => u32::from_str_radix(digits, 16),
-        None => text.parse(),
-    };
-    let fits = number.ok().filter(|address| address.is_multiple_of(8));
-    fits.ok_or_else(|| "an address like 0x080C0000, a multiple of 8, is needed".into())
 }
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
@@ -135,7 +130,21 @@ fn rehearse(port: &Port, bytes: &[u8], blob: &Blob, trial: bool) -> Result<Answe
     Ok(Answer::Yes)
 }
 
+/// Refuses a sector that holds something else, unless it is forced; then says what will happen.
+fn check_sector(sector: Sector, force: bool) -> Result<(), Failure> {
+    let Some(danger) = sector.content().danger() else { return Ok(()) };
+    let told = format!("--address {sector} is sector {} of the flash: {danger}", sector.number());
+    if !force {
+        let way_out = format!("leave out --address for {}, or add --force if this is meant", Sector::DEFAULT);
+        return Err(Failure::Input(format!("{told}; {way_out}")));
+    }
+    // Whoever closed standard error does not want to know.
+    let _ = writeln!(std::io::stderr(), "grn: warning: {told}");
+    Ok(())
+}
+
 fn write(folder: &std::path::Path, bytes: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
+    check_sector(arguments.address, arguments.force)?;
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs() as u32);
     let sequence = arguments.sequence.unwrap_or(now);
     let file = SlotFile::new(bytes, arguments.address, sequence).map_err(about(arguments.blob.display()))?;

@@ -2,10 +2,9 @@
 
 use super::flash::DEFAULT_BAUD;
 use super::{Answer, Failure, print};
-use crate::port::Port;
-use firmware_sim::link::{Client, LinkError, Patience, Wire};
 use grn_core::robot::link::message::{About, RobotStatus, Status};
 use grn_core::robot::slots::Stage;
+use grn_link::{Client, LinkError, Patience, Port, Wire};
 use std::time::Duration;
 
 #[derive(clap::Args)]

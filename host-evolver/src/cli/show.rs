@@ -1,9 +1,9 @@
 //! `grn show`.
 
 use super::{Answer, Failure, about, print, print_json};
-use crate::describe;
+use crate::evaluation::Model;
 use crate::files::read_blob;
-use crate::objective::Model;
+use crate::model::describe;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ fn identity(blob: &Blob) -> String {
 }
 
 /// Nodes of the syntax tree, functions and terminals.
-fn nodes(tree: &crate::report::SyntaxTree) -> usize {
+fn nodes(tree: &grn_figures::SyntaxTree) -> usize {
     1 + tree.children.iter().map(nodes).sum::<usize>()
 }
 

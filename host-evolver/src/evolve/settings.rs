@@ -1,7 +1,7 @@
 //! What decides a run besides the scenario.
 
-use crate::search::de;
-use crate::variation::MotifSet;
+use crate::model::variation::MotifSet;
+use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -103,13 +103,13 @@ impl Objective for Depth {
 #[test]
 fn a_third_objective_needs_nothing_but_itself() {
     let world = channel();
-    let grammar = Grammar::new(crate::variation::MotifSet::All, (1, 4), (0.0, 2.0));
+    let grammar = Grammar::new(crate::model::variation::MotifSet::All, (1, 4), (0.0, 2.0));
     let objectives: [&dyn Objective; 3] = [&Nodes, &RingError, &Depth];
     let mut search = Search::with(&world, small(), objectives, Box::new(grammar), None).unwrap();
     let go = AtomicBool::new(false);
     while search.advance(&go, &|_| {}) == Advance::Generation {}
     let front = search.front();
-    let scores: Vec<_> = front.iter().map(|member| member.individual.scores(&objectives)).collect();
+    let scores: Vec<_> = front.iter().map(|member| scores(&member.individual, &objectives)).collect();
     assert!(scores.iter().all(|a| scores.iter().all(|b| !a.dominates(b))));
     assert!(front.iter().all(|member| member.individual.is_feasible()));
 }

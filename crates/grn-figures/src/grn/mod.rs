@@ -1,0 +1,6 @@
+//! The figure of a network.
+
+pub(crate) mod data;
+mod draw;
+pub(crate) mod figure;
+mod layout;

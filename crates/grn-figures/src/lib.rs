@@ -1,0 +1,40 @@
+//! Figures of a campaign: plain data in, an SVG document out.
+//!
+//! Every figure is a pure function. It reads nothing but its arguments, and equal arguments give equal
+//! bytes, so figures can be held in golden files and compared between runs. Lengths on paper are points
+//! (1/72 inch): [`style::COLUMN`] is one column of a two-column page, [`style::PAGE`] its full width, and no
+//! text but subscripts is set below 7 points. Lengths in the world are metres with y upwards, times are
+//! seconds, angles in the data are radians unless a name says otherwise.
+//!
+//! Colours are those of Okabe and Ito, which people with colour-blindness can tell apart; every
+//! distinction is also made by shape, dash or lightness, so that a grey print keeps it.
+//!
+//! Charts with axes are drawn by `plotters` (`chart/axes.rs`). Trees, networks and maps need fractional
+//! coordinates, subscripts and measured text, which that crate's SVG backend does not have without a font
+//! library, so they use the small writer in `canvas/svg.rs`.
+
+mod boxes;
+mod canvas;
+mod chart;
+mod convergence;
+mod grn;
+mod pareto;
+mod pattern;
+mod rates;
+mod trace;
+mod tree;
+
+pub use boxes::{BoxFigure, BoxGroup, BoxPanel, boxes};
+pub use canvas::error::FigureError;
+pub use canvas::style;
+pub use chart::map::Window;
+pub use convergence::{ConvergenceFigure, ConvergencePanel, ConvergenceSeries, convergence};
+pub use grn::data::{Gene, Input, Source};
+pub use grn::figure::grn;
+pub use pareto::data::{KneeKind, ParetoPoint, Reference};
+pub use pareto::figure::pareto;
+pub use pattern::{Panel, PatternFigure, Target, pattern};
+pub use rates::{RateGroup, RateRow, RatesFigure, rates};
+pub use trace::data::{Instant, Pose, TraceFigure};
+pub use trace::figure::trace;
+pub use tree::{SyntaxTree, tree};

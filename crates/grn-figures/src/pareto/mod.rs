@@ -1,0 +1,5 @@
+//! The figure of a front.
+
+pub(crate) mod data;
+pub(crate) mod figure;
+mod front;

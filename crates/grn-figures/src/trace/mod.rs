@@ -1,0 +1,6 @@
+//! The figure of a run.
+
+pub(crate) mod data;
+pub(crate) mod figure;
+mod map;
+mod strips;

@@ -1,0 +1,36 @@
+//! A finer lattice, on which doubtful topology is decided.
+
+use super::lanes::{Lanes, WIDTH};
+use super::lattice::{LATTICE_STEP, Lattice, Site};
+use std::sync::OnceLock;
+
+/// Spacing of the fine lattice, metres.
+const FINE_STEP: f64 = LATTICE_STEP / 4.0;
+
+/// The fine lattice and what was asked for so far, by whichever thread: every thread would find the same.
+#[derive(Debug)]
+pub(super) struct FineLattice {
+    pub(super) lattice: Lattice,
+    pub(super) runs: Vec<OnceLock<Box<Run>>>,
+}
+
+/// At so many moments x1 is kept, which takes 5 KB a run; for more it would not pay.
+pub(super) const MOST_KEPT_MOMENTS: usize = 64;
+
+/// What no model changes at eight nodes.
+#[derive(Debug)]
+pub(super) struct Run {
+    pub(super) clearance: [f64; WIDTH],
+    pub(super) sites: [Site; WIDTH],
+    pub(super) x2: Lanes,
+    /// At each of the first [`MOST_KEPT_MOMENTS`].
+    pub(super) x1: Vec<OnceLock<Lanes>>,
+}
+
+impl FineLattice {
+    pub(super) fn over(region: [f64; 2]) -> FineLattice {
+        let lattice = Lattice::over(region, FINE_STEP);
+        let runs = lattice.nodes().step_by(WIDTH).map(|_| OnceLock::new()).collect();
+        FineLattice { lattice, runs }
+    }
+}

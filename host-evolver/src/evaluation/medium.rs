@@ -1,0 +1,124 @@
+//! A lattice with what models read at its nodes: kept for the coarse one, computed when asked for on the fine one.
+
+use super::fine_lattice::{MOST_KEPT_MOMENTS, Run};
+use super::lanes::{Lanes, WIDTH};
+use super::lattice::{Edge, Lattice, NodeIndex, Site, is_crease};
+use super::world::{Snapshot, World};
+use grn_core::geometry::Point;
+use std::sync::OnceLock;
+
+/// A lattice with what models need to know at its nodes.
+pub(super) trait Medium {
+    /// Whether inputs at nodes are at hand.
+    const KEEPS_INPUTS: bool;
+    fn world(&self) -> &World;
+    fn lattice(&self) -> &Lattice;
+    /// (x1, x2) at eight nodes from `first` on, a multiple of eight.
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2];
+    /// (x1, x2) at one node.
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
+    /// Signed distance to the nearest wall, metres, negative inside.
+    fn clearance(&self, node: NodeIndex) -> f64;
+    /// What a pattern meets at a node.
+    fn site(&self, node: NodeIndex) -> Site;
+
+    /// Whether the distance to the walls is far from linear along an edge.
+    fn is_creased(&self, edge: Edge) -> bool;
+
+    /// The point at the fraction `t` of the way along an edge.
+    fn along(&self, edge: Edge, t: f64) -> Point<f64> {
+        let start = self.lattice().point(edge.from);
+        start + (self.lattice().point(edge.to) - start) * t
+    }
+
+    /// (x1, x2) at fractions of the way along eight edges. x1 is exact; x2 takes the distance to the walls as linear
+    /// along an edge, which it is beside a straight wall; other edges are
+    /// [creased](Medium::is_creased).
+    fn inputs_along(&self, snapshot: &Snapshot, edges: &[Edge; WIDTH], t: Lanes) -> [Lanes; 2] {
+        let points = std::array::from_fn(|lane| self.along(edges[lane], t.0[lane]));
+        let clearance = std::array::from_fn(|lane| {
+            let (from, to) = (self.clearance(edges[lane].from), self.clearance(edges[lane].to));
+            from + (to - from) * t.0[lane]
+        });
+        [self.world().x1_at_all(snapshot, &points), self.world().x2_at_all(Lanes(clearance))]
+    }
+}
+
+/// The world's own lattice, whose inputs are kept.
+#[derive(Clone, Copy)]
+pub(super) struct Kept<'w>(pub &'w World);
+
+impl Medium for Kept<'_> {
+    const KEEPS_INPUTS: bool = true;
+    fn world(&self) -> &World {
+        self.0
+    }
+    fn lattice(&self) -> &Lattice {
+        &self.0.lattice
+    }
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
+        [0, 1].map(|input| Lanes(std::array::from_fn(|lane| f64::from(snapshot.inputs[first + lane][input]))))
+    }
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
+        snapshot.inputs[node].map(f64::from)
+    }
+    fn clearance(&self, node: NodeIndex) -> f64 {
+        self.0.clearance[node]
+    }
+    fn site(&self, node: NodeIndex) -> Site {
+        self.0.sites[node]
+    }
+    fn is_creased(&self, edge: Edge) -> bool {
+        let along_rows = edge.from.abs_diff(edge.to) == 1;
+        self.0.creases[edge.from.min(edge.to)][usize::from(!along_rows)]
+    }
+}
+
+/// The fine lattice as a medium: inputs are computed when asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Computed<'w>(pub &'w World);
+
+impl Computed<'_> {
+    /// The run that holds a node.
+    fn run(&self, node: NodeIndex) -> &Run {
+        self.0.fine.runs[node / WIDTH].get_or_init(|| {
+            let first = node - node % WIDTH;
+            let clearance = self.lattice().run(first).map(|point| self.0.clearance_at(point));
+            let site = |lane: usize| Site::of(self.lattice(), first + lane, clearance[lane]);
+            Box::new(Run {
+                clearance,
+                sites: std::array::from_fn(site),
+                x2: self.0.x2_at_all(Lanes(clearance)),
+                x1: vec![OnceLock::new(); self.0.snapshots().len().min(MOST_KEPT_MOMENTS)],
+            })
+        })
+    }
+}
+
+impl Medium for Computed<'_> {
+    const KEEPS_INPUTS: bool = false;
+    fn world(&self) -> &World {
+        self.0
+    }
+    fn lattice(&self) -> &Lattice {
+        &self.0.fine.lattice
+    }
+    fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
+        let run = self.run(first);
+        let x1 = || self.0.x1_at_all(snapshot, &self.lattice().run(first));
+        [run.x1.get(snapshot.place).map_or_else(x1, |kept| *kept.get_or_init(x1)), run.x2]
+    }
+    fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
+        self.0.inputs_at(snapshot, self.lattice().point(node))
+    }
+    fn clearance(&self, node: NodeIndex) -> f64 {
+        self.run(node).clearance[node % WIDTH]
+    }
+    fn site(&self, node: NodeIndex) -> Site {
+        self.run(node).sites[node % WIDTH]
+    }
+    fn is_creased(&self, edge: Edge) -> bool {
+        let middle = self.0.clearance_at(self.along(edge, 0.5));
+        is_crease(self.clearance(edge.from), middle, self.clearance(edge.to))
+    }
+}

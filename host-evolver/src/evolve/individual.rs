@@ -1,0 +1,32 @@
+//! A model that the search has tuned.
+
+use crate::evaluation::Evaluation;
+use crate::model::tree::Tree;
+use serde::{Deserialize, Serialize};
+
+/// A tuned tree and what it is worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Individual {
+    /// The tree with its θ.
+    pub tree: Tree,
+    /// f2 in [0, 2].
+    pub f2: f64,
+    /// Constraint violation, 0 for a feasible model.
+    pub violation: f64,
+}
+
+impl Individual {
+    pub(super) fn new(tree: Tree, evaluation: Evaluation) -> Self {
+        Individual { tree, f2: evaluation.f2, violation: evaluation.violation }
+    }
+
+    /// (f1, f2): how many nodes, and the ring error.
+    pub fn point(&self) -> [f64; 2] {
+        [self.tree.size() as f64, self.f2]
+    }
+
+    /// Whether it encloses every target everywhere without coming too close to a wall.
+    pub fn is_feasible(&self) -> bool {
+        self.violation == 0.0
+    }
+}

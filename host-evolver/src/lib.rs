@@ -1,5 +1,8 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+// These panic where nobody can hear them; the command line has its own way to speak.
+#![deny(clippy::print_stdout, clippy::print_stderr, clippy::dbg_macro)]
+
 pub mod campaign;
 pub mod cli;
 #[cfg(unix)]
@@ -9,6 +12,7 @@ pub mod evolve;
 pub mod figures;
 pub mod files;
 pub mod model;
+pub mod results;
 pub mod run;
 pub mod sectors;
 pub mod simulation;

@@ -12,7 +12,7 @@ use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::pattern::NoPattern;
 use grn_core::robot::{Controller, LoadError};
-use grn_core::scalar::{Q8_24, Scalar};
+use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use serde::Serialize;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -26,19 +26,6 @@ pub const ENOUGH_ACCURACY: f64 = 0.10;
 pub const ENOUGH_UNKNOWN: f64 = 0.05;
 /// Most contacts between robots, for each robot: one may bump into another while the swarm forms, not again and again.
 pub const ENOUGH_PEER_CONTACTS: f64 = 1.0;
-
-/// The number type robots compute with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
-pub enum Number {
-    /// Single precision.
-    #[value(name = "f32")]
-    #[serde(rename = "f32")]
-    F32,
-    /// Fixed point, for robots without a floating-point unit.
-    #[value(name = "q8.24")]
-    #[serde(rename = "q8.24")]
-    Q824,
-}
 
 /// Why there was no simulation.
 #[derive(Debug)]
@@ -140,12 +127,12 @@ pub fn simulate(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
-    number: Number,
+    number: NumberType,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        Number::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
-        Number::Q824 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
+        NumberType::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
+        NumberType::Q8_24 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
     }
 }
 

@@ -7,10 +7,10 @@ use firmware_sim::{Scenario, Swarm, SwarmConfig};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
 use grn_core::robot::{Command, Controller, Message, Percept};
-use grn_core::scalar::{Q8_24, Scalar};
+use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use grn_tests::golden::repository;
 use grn_tests::robots::Shipped;
-use host_evolver::simulation::{Number, Simulation, simulate};
+use host_evolver::simulation::{Simulation, simulate};
 use std::ops::ControlFlow;
 
 /// A controller on a radio that gives the robot its own broadcasts back, before what others say, if `loopback`.
@@ -26,7 +26,7 @@ impl<S: Scalar> Brain for OnRadio<S> {
         if let Some(own) = self.sent.take().filter(|_| self.loopback) {
             percept.heard.insert(0, own).unwrap();
         }
-        let command = self.controller.tick(&percept);
+        let command = self.controller.tick(&percept).map_err(|error| BrainError::new(error.to_string()))?;
         self.sent.clone_from(&command.broadcast);
         Ok(command)
     }
@@ -37,7 +37,7 @@ fn simulation(model: &str, world: &str, config: SwarmConfig) -> Simulation {
     let scenario = Scenario::load(repository(&format!("scenarios/{world}.toml"))).unwrap();
     let blob = Blob::<DEFAULT_GENES>::decode(&Shipped::named(model).bytes).unwrap();
     let config = SwarmConfig { robots: 12, target_speed_m_per_s: 0.03, ..config };
-    simulate(&blob, &scenario, config, Number::F32, |_| ControlFlow::Continue(())).unwrap().unwrap()
+    simulate(&blob, &scenario, config, NumberType::F32, |_| ControlFlow::Continue(())).unwrap().unwrap()
 }
 
 /// The bytes of half a minute of twelve robots in the channel.

@@ -1,6 +1,6 @@
 //! `grn flash`.
 
-use super::{Answer, Failure, about, print};
+use super::{Answer, Failure, about, output};
 use crate::sectors::Sector;
 use crate::slot_file::SlotFile;
 use grn_core::blob::{Blob, FORMAT_VERSION};
@@ -10,7 +10,6 @@ use grn_core::robot::link::message::{Begin, Chunk};
 use grn_link::flashing::{self, Flashed, Progress};
 use grn_link::{Client, Patience, Port};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -93,7 +92,7 @@ fn upload(port: &Port, bytes: &[u8], blob: &Blob, arguments: &Arguments) -> Resu
         Flashed::WasInCharge => "was in charge already",
     };
     let trial = if arguments.trial { ", on trial for 64 ticks" } else { "" };
-    print(format!("{port}: {} on {} {was}{trial}", hexadecimal(&identity), robot.name))?;
+    output::report(format!("{port}: {} on {} {was}{trial}", hexadecimal(&identity), robot.name));
     Ok(Answer::Yes)
 }
 
@@ -114,10 +113,10 @@ fn check(robot: &About, bytes: &[u8], blob: &Blob) -> Result<(), String> {
 
 fn rehearse(port: &Port, bytes: &[u8], blob: &Blob, trial: bool) -> Result<Answer, Failure> {
     let identity = blob.identity();
-    print(format!("{port}: nothing is sent. Blob {}, {} bytes:", hexadecimal(&identity), bytes.len()))?;
+    output::product(format!("{port}: nothing is sent. Blob {}, {} bytes:", hexadecimal(&identity), bytes.len()))?;
     let begin = encode_request(3, &Begin { length: bytes.len() as u32, identity });
     let show = |what: &str, frame: Option<heapless::Vec<u8, MAX_WIRE>>| {
-        print(format!("  {what:<28}{}", hexadecimal(&frame.unwrap_or_default())))
+        output::product(format!("  {what:<28}{}", hexadecimal(&frame.unwrap_or_default())))
     };
     show("begin", begin.ok())?;
     for (place, piece) in bytes.chunks(MAX_CHUNK).enumerate() {
@@ -126,7 +125,7 @@ fn rehearse(port: &Port, bytes: &[u8], blob: &Blob, trial: bool) -> Result<Answe
         let frame = encode_request(4 + place as u8, &chunk);
         show(&format!("chunk at {offset}, {} bytes", piece.len()), frame.ok())?;
     }
-    print(format!("then: verify, activate{}", if trial { " (on trial)" } else { ", confirm" }))?;
+    output::product(format!("then: verify, activate{}", if trial { " (on trial)" } else { ", confirm" }))?;
     Ok(Answer::Yes)
 }
 
@@ -138,8 +137,7 @@ fn check_sector(sector: Sector, force: bool) -> Result<(), Failure> {
         let way_out = format!("leave out --address for {}, or add --force if this is meant", Sector::DEFAULT);
         return Err(Failure::Input(format!("{told}; {way_out}")));
     }
-    // Whoever closed standard error does not want to know.
-    let _ = writeln!(std::io::stderr(), "grn: warning: {told}");
+    output::notice(format_args!("grn: warning: {told}"));
     Ok(())
 }
 
@@ -154,10 +152,21 @@ fn write(folder: &std::path::Path, bytes: &[u8], arguments: &Arguments) -> Resul
     if !arguments.dry_run {
         file.write(folder, &arguments.programmer)?;
     }
-    print(format!("{:#010x} to {last:#010x}, upload number {sequence}; {would}:", file.address))?;
-    print(format!("  {}, {}", names.hex.display(), names.binary.display()))?;
-    print(format!("with the e-puck2's programmer on {}:", arguments.programmer))?;
-    print(format!("  arm-none-eabi-gdb --batch --command {}", names.gdb.display()))?;
-    print(format!("over USB DFU:\n  {}", file.dfu_line(&names.binary)))?;
+    let told = format!(
+        "{:#010x} to {last:#010x}, upload number {sequence}; {would}:\n  {}, {}\n\
+         with the e-puck2's programmer on {}:\n  arm-none-eabi-gdb --batch --command {}\n\
+         over USB DFU:\n  {}",
+        file.address,
+        names.hex.display(),
+        names.binary.display(),
+        arguments.programmer,
+        names.gdb.display(),
+        file.dfu_line(&names.binary)
+    );
+    if arguments.dry_run {
+        output::product(told)?;
+    } else {
+        output::report(told);
+    }
     Ok(Answer::Yes)
 }

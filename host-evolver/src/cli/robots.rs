@@ -1,7 +1,7 @@
 //! `grn robots`.
 
 use super::flash::DEFAULT_BAUD;
-use super::{Answer, Failure, print};
+use super::{Answer, Failure, output};
 use grn_core::robot::link::message::{About, RobotStatus, Status};
 use grn_core::robot::slots::Stage;
 use grn_link::{Client, LinkError, Patience, Port, Wire};
@@ -23,14 +23,14 @@ const PATIENCE: Patience =
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let ports = if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() };
     if ports.is_empty() {
-        print("no serial ports here; name others as tcp:HOST:PORT or unix:PATH")?;
+        output::product("no serial ports here; name others as tcp:HOST:PORT or unix:PATH")?;
         return Ok(Answer::No);
     }
     let mut found = false;
     for port in ports {
         let answer = port.open(arguments.baud).map_err(LinkError::from).and_then(ask);
         found |= answer.is_ok();
-        print(match answer {
+        output::product(match answer {
             Ok((about, status)) => format!("{port}: {}", described(&about, &status)),
             Err(error) => format!("{port}: {error}"),
         })?;
@@ -45,9 +45,9 @@ fn ask(wire: Box<dyn Wire>) -> Result<(About, RobotStatus), LinkError> {
 }
 
 fn described(about: &About, status: &RobotStatus) -> String {
-    let About { protocol, blob_format, genes, arithmetic, name, .. } = about;
+    let About { protocol, blob_format, genes, number_type, name, .. } = about;
     let mut text =
-        format!("{name}, {arithmetic:?}, link version {protocol}, blob format {blob_format}, at most {genes} genes");
+        format!("{name}, {number_type}, link version {protocol}, blob format {blob_format}, at most {genes} genes");
     for (place, slot) in status.slots.iter().enumerate() {
         let stage = match slot.stage {
             Stage::Empty => "empty",

@@ -4,8 +4,8 @@
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
-    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request,
-    Reset, RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
+    About, Activate, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request, Reset,
+    RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
 };
 use super::refusal::Refusal;
 use crate::blob::{Blob, FORMAT_VERSION, Identity};
@@ -13,7 +13,7 @@ use crate::network::DEFAULT_GENES;
 use crate::robot::controller::Controller;
 use crate::robot::percept::{Command, Percept};
 use crate::robot::slots::{Layout, MAX_BLOB, SlotError, Slots};
-use crate::scalar::Scalar;
+use crate::scalar::{NumberType, Scalar};
 use embedded_storage::nor_flash::{NorFlash, NorFlashErrorKind};
 use heapless::{String, Vec};
 
@@ -44,10 +44,10 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
     /// # Errors
     /// [`SlotError::Layout`], or what the flash says.
     #[inline(never)]
-    pub fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
+    pub fn start(flash: F, layout: Layout, name: &str, number_type: NumberType) -> Result<Self, SlotError> {
         let slots = Slots::start(flash, layout, |blob| loads::<S>(blob).is_ok())?;
         let name = String::try_from(name).unwrap_or_default();
-        let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, arithmetic };
+        let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, number_type };
         let mut server = Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot };
         match server.robot.reset(0) {
             // Without a blob in charge the robot waits for one.
@@ -74,7 +74,8 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
     /// One control tick with the robot's own percept.
     ///
     /// # Errors
-    /// [`Refusal::NoController`] while no blob is in charge.
+    /// [`Refusal::NoController`] while no blob is in charge, [`Refusal::Percept`] for a percept that no robot can have.
+    /// After a refusal the robot is to stop its wheels.
     pub fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         self.robot.tick(percept)
     }
@@ -92,7 +93,7 @@ struct Robot<F, S> {
     ticks: u16,
     number: u8,
     name: String<24>,
-    arithmetic: Arithmetic,
+    number_type: NumberType,
 }
 
 impl<F: NorFlash, S: Scalar> Robot<F, S> {
@@ -119,7 +120,7 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
             blob_format: FORMAT_VERSION,
             genes: DEFAULT_GENES as u8,
             blob_bytes: MAX_BLOB as u16,
-            arithmetic: self.arithmetic,
+            number_type: self.number_type,
             name: self.name.clone(),
         }
     }
@@ -174,7 +175,7 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     #[inline(never)]
     fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
-        let command = controller.tick(percept);
+        let command = controller.tick(percept)?;
         self.ticks = self.ticks.saturating_add(1);
         if self.ticks == TRIAL_TICKS {
             self.slots.confirm(controller.identity())?;

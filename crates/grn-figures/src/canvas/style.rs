@@ -29,8 +29,6 @@ pub const LIGHT: &str = "#DADADA";
 pub const WALL: &str = "#D2D2D2";
 /// Okabe-Ito blue: the pattern, target input x1.
 pub const BLUE: &str = "#0072B2";
-/// Okabe-Ito sky blue.
-pub const SKY: &str = "#56B4E9";
 /// Okabe-Ito orange: obstacle input x2.
 pub const ORANGE: &str = "#E69F00";
 /// Okabe-Ito bluish green: enclosed targets.

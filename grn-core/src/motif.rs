@@ -1,79 +1,42 @@
 //! The ten network motifs: how the inputs of a gene regulate its expression.
 //!
-//! All that there is to a motif is here: another one is a variant with the next free opcode, and an arm in each function.
+//! All that there is to a motif is here: another one is a line of the table with the next free opcode, and an arm in each
+//! function; the compiler and the tests below name what is missing.
 
+use crate::coded::coded;
 use crate::scalar::Arithmetic;
+use core::fmt;
 
 /// The most inputs a gene can have (OR and NOR).
 pub const MAX_INPUTS: usize = 4;
 
-/// A network motif (Fan et al. 2019, section IV-A). The discriminant is its opcode in a blob and never changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u8)]
-pub enum Motif {
-    /// σ(a)
-    Pos = 1,
-    /// 1 - σ(a)
-    Neg = 2,
-    /// σ(a·b)
-    And = 3,
-    /// 1 - σ(a·b)
-    Nand = 4,
-    /// σ(a + b), of two to four inputs
-    Or = 5,
-    /// 1 - σ(a + b), of two to four inputs
-    Nor = 6,
-    /// σ(a·(1-b))
-    Andn = 7,
-    /// σ(a + (1-b))
-    Orn = 8,
-    /// σ(a·(1-b)) + σ((1-a)·b), both with one θ; may exceed 1
-    Xor = 9,
-    /// 1 - σ(a·(1-b)) - σ((1-a)·b), both with one θ; may be negative
-    Xnor = 10,
+coded! {
+    /// A network motif (Fan et al. 2019, section IV-A), with its opcode in a blob and its name in the paper.
+    pub enum Motif {
+        /// σ(a)
+        Pos = (1, "POS"),
+        /// 1 - σ(a)
+        Neg = (2, "NEG"),
+        /// σ(a·b)
+        And = (3, "AND"),
+        /// 1 - σ(a·b)
+        Nand = (4, "NAND"),
+        /// σ(a + b), of two to four inputs
+        Or = (5, "OR"),
+        /// 1 - σ(a + b), of two to four inputs
+        Nor = (6, "NOR"),
+        /// σ(a·(1-b))
+        Andn = (7, "ANDN"),
+        /// σ(a + (1-b))
+        Orn = (8, "ORN"),
+        /// σ(a·(1-b)) + σ((1-a)·b), both with one θ; may exceed 1
+        Xor = (9, "XOR"),
+        /// 1 - σ(a·(1-b)) - σ((1-a)·b), both with one θ; may be negative
+        Xnor = (10, "XNOR"),
+    }
 }
 
 impl Motif {
-    /// All ten, in the order of their opcodes.
-    pub const ALL: [Motif; 10] = [
-        Motif::Pos,
-        Motif::Neg,
-        Motif::And,
-        Motif::Nand,
-        Motif::Or,
-        Motif::Nor,
-        Motif::Andn,
-        Motif::Orn,
-        Motif::Xor,
-        Motif::Xnor,
-    ];
-
-    /// The numeric opcode, 1 to 10.
-    pub const fn opcode(self) -> u8 {
-        self as u8
-    }
-
-    /// The motif with this opcode, if there is one.
-    pub fn from_opcode(opcode: u8) -> Option<Motif> {
-        Motif::ALL.into_iter().find(|motif| motif.opcode() == opcode)
-    }
-
-    /// The name in capitals, as in the paper.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Motif::Pos => "POS",
-            Motif::Neg => "NEG",
-            Motif::And => "AND",
-            Motif::Nand => "NAND",
-            Motif::Or => "OR",
-            Motif::Nor => "NOR",
-            Motif::Andn => "ANDN",
-            Motif::Orn => "ORN",
-            Motif::Xor => "XOR",
-            Motif::Xnor => "XNOR",
-        }
-    }
-
     /// How many inputs a gene with this motif may have.
     pub const fn arity(self) -> core::ops::RangeInclusive<usize> {
         match self {
@@ -107,19 +70,29 @@ impl Motif {
         }
     }
 
-    /// The same function as text, in the paper's notation; `a`, `b`, … are the operands.
-    pub const fn formula(self) -> &'static str {
+    /// Writes the same function as text, in the paper's notation, over the names of the operands; a missing one is 0.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write_formula(
+        self,
+        out: &mut impl fmt::Write,
+        operands: &[impl fmt::Display],
+        theta: impl fmt::Display,
+    ) -> fmt::Result {
+        let (a, b) = (Operand(operands.first()), Operand(operands.get(1)));
+        let sum = Sum(operands);
         match self {
-            Motif::Pos => "sig(a, θ)",
-            Motif::Neg => "1 - sig(a, θ)",
-            Motif::And => "sig(a*b, θ)",
-            Motif::Nand => "1 - sig(a*b, θ)",
-            Motif::Or => "sig(a + b + …, θ)",
-            Motif::Nor => "1 - sig(a + b + …, θ)",
-            Motif::Andn => "sig(a*(1 - b), θ)",
-            Motif::Orn => "sig(a + (1 - b), θ)",
-            Motif::Xor => "sig(a*(1 - b), θ) + sig((1 - a)*b, θ)",
-            Motif::Xnor => "1 - sig(a*(1 - b), θ) - sig((1 - a)*b, θ)",
+            Motif::Pos => write!(out, "sig({a}, {theta})"),
+            Motif::Neg => write!(out, "1 - sig({a}, {theta})"),
+            Motif::And => write!(out, "sig({a}*{b}, {theta})"),
+            Motif::Nand => write!(out, "1 - sig({a}*{b}, {theta})"),
+            Motif::Or => write!(out, "sig({sum}, {theta})"),
+            Motif::Nor => write!(out, "1 - sig({sum}, {theta})"),
+            Motif::Andn => write!(out, "sig({a}*(1 - {b}), {theta})"),
+            Motif::Orn => write!(out, "sig({a} + (1 - {b}), {theta})"),
+            Motif::Xor => write!(out, "sig({a}*(1 - {b}), {theta}) + sig((1 - {a})*{b}, {theta})"),
+            Motif::Xnor => write!(out, "1 - sig({a}*(1 - {b}), {theta}) - sig((1 - {a})*{b}, {theta})"),
         }
     }
 
@@ -133,9 +106,48 @@ impl Motif {
     }
 }
 
+/// The name of an operand, if there is one.
+struct Operand<'a, D>(Option<&'a D>);
+
+impl<D: fmt::Display> fmt::Display for Operand<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(name) => name.fmt(f),
+            None => f.write_str("0"),
+        }
+    }
+}
+
+/// The names of operands with plus signs between them.
+struct Sum<'a, D>(&'a [D]);
+
+impl<D: fmt::Display> fmt::Display for Sum<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, name) in self.0.iter().enumerate() {
+            f.write_str(if place > 0 { " + " } else { "" })?;
+            name.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_formula_is_written_over_any_names() {
+        let written = |motif: Motif, operands: &[&str]| {
+            let mut text = std::string::String::new();
+            motif.write_formula(&mut text, operands, "0.5").map(|()| text)
+        };
+        // Names with letters that the formulas themselves hold.
+        assert_eq!(written(Motif::Nand, &["ab", "sigma"]).as_deref(), Ok("1 - sig(ab*sigma, 0.5)"));
+        assert_eq!(written(Motif::Nor, &["b", "a", "ba"]).as_deref(), Ok("1 - sig(b + a + ba, 0.5)"));
+        let xor = "sig(b*(1 - a), 0.5) + sig((1 - b)*a, 0.5)";
+        assert_eq!(written(Motif::Xor, &["b", "a"]).as_deref(), Ok(xor));
+        assert_eq!(written(Motif::Orn, &["b"]).as_deref(), Ok("sig(b + (1 - 0), 0.5)"));
+    }
 
     #[test]
     fn every_motif_follows_its_equation() {
@@ -153,6 +165,7 @@ mod tests {
             (Motif::Xor, sig(0.56) + sig(0.06)),
             (Motif::Xnor, 1.0 - sig(0.56) - sig(0.06)),
         ];
+        assert_eq!(expected.map(|(motif, _)| motif), Motif::ALL, "a motif has no value to be held to");
         for (motif, value) in expected {
             let inputs = &[a, b, c][..(*motif.arity().end()).min(3)];
             let got = motif.regulation(inputs.iter().copied(), theta, k);
@@ -175,21 +188,12 @@ mod tests {
 
     #[test]
     fn opcodes_are_frozen() {
-        let codes: std::vec::Vec<_> = Motif::ALL.iter().map(|m| (m.name(), m.opcode())).collect();
-        let frozen = [
-            ("POS", 1),
-            ("NEG", 2),
-            ("AND", 3),
-            ("NAND", 4),
-            ("OR", 5),
-            ("NOR", 6),
-            ("ANDN", 7),
-            ("ORN", 8),
-            ("XOR", 9),
-            ("XNOR", 10),
-        ];
-        assert_eq!(codes, frozen);
-        assert!(Motif::ALL.iter().all(|&m| Motif::from_opcode(m.opcode()) == Some(m)));
-        assert!(Motif::from_opcode(0).is_none() && Motif::from_opcode(11).is_none());
+        let frozen = ["POS", "NEG", "AND", "NAND", "OR", "NOR", "ANDN", "ORN", "XOR", "XNOR"];
+        let names: std::vec::Vec<_> = Motif::ALL.iter().map(|motif| motif.name()).collect();
+        assert_eq!(names, frozen, "a released motif keeps its place; a new one goes to the end of this list, too");
+        for (motif, code) in Motif::ALL.into_iter().zip(1..) {
+            assert_eq!((motif.code(), Motif::from_code(code)), (code, Some(motif)));
+        }
+        assert!(Motif::from_code(0).is_none() && Motif::from_code(frozen.len() as u8 + 1).is_none());
     }
 }

@@ -33,8 +33,6 @@ pub const WALL_EDGE: &str = "#4D4D4D";
 pub const EDGE: &str = "#C9C9C9";
 /// Okabe-Ito blue: the pattern, target input x1.
 pub const BLUE: &str = "#0072B2";
-/// Okabe-Ito sky blue.
-pub const SKY: &str = "#56B4E9";
 /// Okabe-Ito orange: obstacle input x2.
 pub const ORANGE: &str = "#E69F00";
 /// Okabe-Ito bluish green: enclosed targets.

@@ -1,8 +1,8 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, output, this_command};
+use super::{Answer, Failure, interrupt, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -64,15 +64,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 struct Progress {
     bar: ProgressBar,
+    found: progress::Found,
     told: std::sync::Mutex<Instant>,
 }
 
 impl Progress {
     fn new(work: u64) -> Progress {
-        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed} · {eta} left");
-        let bar = ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let found = progress::Found::default();
+        let style = progress::style("campaign {bar:40} {percent} % · {elapsed} · {left}", &found);
+        let bar = ProgressBar::new(work).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
-        Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
+        Progress { bar, found, told: std::sync::Mutex::new(Instant::now()) }
     }
 }
 
@@ -81,13 +83,19 @@ impl Listener for Progress {
         self.bar.suspend(|| output::notice(text));
     }
 
+    fn found(&self, evaluations: u64) {
+        self.found.add(evaluations);
+        self.bar.inc(evaluations);
+    }
+
     fn done(&self, evaluations: u64) {
         self.bar.inc(evaluations);
         let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
-            let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            output::notice(format_args!("{share} %, {} s left", self.bar.eta().as_secs()));
+            let (position, total) = (self.bar.position(), self.bar.length().unwrap_or(1).max(1));
+            let left = progress::words(self.found.left(self.bar.elapsed(), position, total));
+            output::notice(format_args!("{} %, {left}", 100 * position / total));
         }
     }
 }

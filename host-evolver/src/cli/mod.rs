@@ -7,6 +7,7 @@ mod evolve;
 mod flash;
 mod interrupt;
 mod output;
+mod progress;
 mod robots;
 mod scatter;
 mod show;

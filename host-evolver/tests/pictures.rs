@@ -10,8 +10,8 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 /// The channel with walls so near that no ring keeps its distance from them.
 fn too_narrow() -> std::io::Result<String> {
     let channel = std::fs::read_to_string(channel())?;
-    let upper = ("[6.0000, 14.0000], [14.0000, 14.0000]", "[6.0, 11.2], [14.0, 11.2]");
-    let lower = ("[14.0000, 6.0000], [6.0000, 6.0000]", "[14.0, 8.8], [6.0, 8.8]");
+    let upper = ("[6.0000, 14.0000], [14.0000, 14.0000]", "[6.0, 10.1], [14.0, 10.1]");
+    let lower = ("[14.0000, 6.0000], [6.0000, 6.0000]", "[14.0, 9.9], [6.0, 9.9]");
     assert!(channel.contains(upper.0) && channel.contains(lower.0), "the channel has other walls");
     Ok(channel.replace(upper.0, upper.1).replace(lower.0, lower.1))
 }

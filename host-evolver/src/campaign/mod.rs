@@ -7,6 +7,7 @@
 mod figures;
 mod method;
 mod plan;
+mod plan_file;
 mod tables;
 mod trial;
 mod unit;

@@ -6,11 +6,13 @@ mod eval;
 mod evolve;
 mod flash;
 mod interrupt;
+mod options;
 mod output;
 mod robots;
 mod scatter;
 mod show;
 mod simulate;
+mod snippet;
 
 use crate::files;
 use clap::{Parser, Subcommand};
@@ -28,7 +30,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
-                          3 the system failed (disk full); 130 interrupted.";
+                          3 the system failed (disk full, broken device, no threads); 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -82,6 +84,9 @@ impl Failure {
             }
             of_system |= error.downcast_ref().is_some_and(files::is_fault_of_system);
             link = error.source();
+        }
+        if let Some(snippet) = snippet::of(error) {
+            message = format!("{message}\n{snippet}");
         }
         if of_system { Failure::System(message) } else { Failure::Input(message) }
     }

@@ -2,7 +2,7 @@
 
 use super::{Answer, Failure, about, output};
 use crate::evaluation::Model;
-use crate::files::read_blob;
+use crate::files::{blob_bytes, read_blob};
 use crate::model::describe;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde_json::{Value, json};
@@ -19,7 +19,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
-    let bytes = std::fs::metadata(&arguments.blob).map_err(about(arguments.blob.display()))?.len();
+    // A blob is canonical: its file has just the bytes that it encodes to.
+    let bytes = blob_bytes(&blob).map_err(about(arguments.blob.display()))?.len();
     if arguments.json {
         output::product_json(&as_json(&blob, bytes))?;
     } else {
@@ -51,7 +52,7 @@ fn nodes(tree: &grn_figures::SyntaxTree) -> usize {
     1 + tree.children.iter().map(nodes).sum::<usize>()
 }
 
-fn as_json(blob: &Blob, bytes: u64) -> Value {
+fn as_json(blob: &Blob, bytes: usize) -> Value {
     let derived = derived(blob);
     let gains = &blob.gains;
     json!({
@@ -86,7 +87,7 @@ fn as_json(blob: &Blob, bytes: u64) -> Value {
     })
 }
 
-fn as_text(blob: &Blob, bytes: u64) -> String {
+fn as_text(blob: &Blob, bytes: usize) -> String {
     let genes = blob.network.genes().len();
     let tree = describe::syntax_tree(&blob.network);
     let mut lines = vec![format!(

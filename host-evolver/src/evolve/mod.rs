@@ -13,7 +13,7 @@ pub use front::{FrontMember, REFERENCE, deployed, front_hypervolume};
 pub use individual::Individual;
 pub use objective::{Objective, Objectives};
 pub use search::{Advance, Search};
-pub use settings::{DeSettings, Settings, SettingsError};
+pub use settings::{DeSettings, MOST_EVALUATIONS, Settings, SettingsError};
 pub use state::{Milestone, State};
 
 #[cfg(test)]

@@ -6,20 +6,25 @@ use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
 use crate::figures::{self, pattern};
-use crate::files::{self, FileError, read_blob};
+use crate::files::{Contents, FileError, read_blob};
 use crate::model::describe;
 use grn_figures::FigureError;
 use grn_optimisers::statistics::quartiles;
 use std::path::Path;
 
-/// Draws everything into the campaign's folder. Variations of a scenario are in the tables only, and so is what became of
-/// one model in one world.
-pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(), FileError> {
+/// Draws everything; `notice` hears of what cannot be drawn. Variations of a scenario are in the tables only, and so is what
+/// became of one model in one world.
+pub(super) fn draw(
+    plan: &Plan,
+    tables: &Tables,
+    campaign: &Path,
+    notice: &dyn Fn(&str),
+) -> Result<Contents, FileError> {
     let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
-    let draw = |name: &str, figure: Result<String, FigureError>| {
-        let path = campaign.join(name);
-        let svg = figure.map_err(|error| FileError::new(&path, format!("cannot be drawn: {error}")))?;
-        files::write(&path, svg)
+    let mut contents = Contents::new();
+    let mut draw = |name: &str, figure: Result<String, FigureError>| match figure {
+        Ok(svg) => drop(contents.insert(name.into(), svg.into_bytes())),
+        Err(error) => notice(&format!("no {name}: {error}")),
     };
     for (measure, name) in [
         (Measure::KneeF2, "f2-of-knees.svg"),
@@ -27,12 +32,12 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
         (Measure::BestNodes, "nodes.svg"),
         (Measure::KneeNodes, "nodes-of-knees.svg"),
     ] {
-        draw(name, boxes(plan, &scenarios, tables, measure))?;
+        draw(name, boxes(plan, &scenarios, tables, measure));
     }
-    draw("convergence.svg", grn_figures::convergence(&convergence(plan, campaign)?))?;
+    draw("convergence.svg", grn_figures::convergence(&convergence(plan, campaign)?));
     for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
         let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
-        draw(&name, grn_figures::rates(figure))?;
+        draw(&name, grn_figures::rates(figure));
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -43,17 +48,17 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
             };
             let front = unit.front(plan, campaign)?;
             if front.iter().any(|member| member.is_feasible()) {
-                draw(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()))?;
+                draw(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()));
             }
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
-            draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)))?;
-            draw(&name("grn"), grn_figures::grn(&describe::graph(&network)))?;
+            draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)));
+            draw(&name("grn"), grn_figures::grn(&describe::graph(&network)));
             if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
-                draw(&name("pattern"), pattern(&world, &model))?;
+                draw(&name("pattern"), pattern(&world, &model));
             }
         }
     }
-    Ok(())
+    Ok(contents)
 }
 
 /// The run whose knee has the median f2 of a method in a scenario.

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::trial::Trial;
 use super::unit::Unit;
 use crate::evolve::{FrontMember, deployed, front_hypervolume};
-use crate::files::{self, FileError};
+use crate::files::{self, Contents, FileError};
 use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -222,12 +222,14 @@ impl Tables {
         Ok(tables)
     }
 
-    /// Writes `results.csv`, `summary.csv`, `comparisons.csv` and `transfers.csv`.
-    pub(super) fn write(&self, campaign: &Path) -> Result<(), FileError> {
-        files::write_csv(&campaign.join("results.csv"), &self.runs)?;
-        files::write_csv(&campaign.join("summary.csv"), &self.summaries)?;
-        files::write_csv(&campaign.join("comparisons.csv"), &self.comparisons)?;
-        files::write_csv(&campaign.join("transfers.csv"), &self.transfers)
+    /// `results.csv`, `summary.csv`, `comparisons.csv` and `transfers.csv`.
+    pub(super) fn contents(&self) -> Contents {
+        Contents::from([
+            ("results.csv".into(), files::csv_records(&self.runs)),
+            ("summary.csv".into(), files::csv_records(&self.summaries)),
+            ("comparisons.csv".into(), files::csv_records(&self.comparisons)),
+            ("transfers.csv".into(), files::csv_records(&self.transfers)),
+        ])
     }
 
     pub(super) fn read(campaign: &Path) -> Result<Tables, FileError> {

@@ -29,6 +29,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let scenario = Scenario::load(&arguments.scenario)?;
+    if let Some(out) = &arguments.out {
+        files::probe(out)?;
+    }
     let radius = [arguments.radius[0], arguments.radius[1]];
     let Arguments { seed, density, clearance, .. } = *arguments;
     let obstacles = RandomObstacles { seed, density, radius, clearance };

@@ -1,10 +1,10 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, output};
+use super::{Answer, Failure, about, interrupt, output, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
-use crate::files::{self, read_blob};
+use crate::files::{self, Contents, FolderLock, read_blob};
 use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Simulation, SimulationError};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::scenario::Scenario;
@@ -84,10 +84,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         ..usual_config(&blob, arguments.robots)
     };
     let stop = interrupt::watch()?;
+    let lock = arguments.out.as_deref().map(take).transpose()?;
     let simulation = simulated(arguments, &blob, &scenario, config, &stop)
         .map_err(|failure| failure.about(arguments.blob.display()))?;
-    if let Some(folder) = &arguments.out {
-        write_folder(folder, &simulation, &scenario, &blob)?;
+    if let Some(lock) = &lock {
+        for (name, content) in files(&simulation, &scenario, &blob)? {
+            files::write(&lock.folder().join(name), content)?;
+        }
     }
     if arguments.json {
         output::product_json(&as_json(&simulation, arguments.number))?;
@@ -159,18 +162,33 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
-/// Writes trace, metrics and picture of a run.
-pub fn write_folder(folder: &Path, simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<(), Failure> {
+/// Trace, metrics and picture of a run, by the names of their files.
+pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
     let number = None;
-    files::write(&folder.join("trace.bin"), simulation.trace.encode())?;
     let mut csv = Vec::new();
-    simulation.trace.to_csv(&mut csv).map_err(about(folder.join("trace.csv").display()))?;
-    files::write(&folder.join("trace.csv"), csv)?;
+    simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
     let metrics = serde_json::to_string_pretty(&metrics_json(simulation, number))? + "\n";
-    files::write(&folder.join("metrics.json"), metrics)?;
-    let svg = figures::run(simulation, scenario, blob).map_err(about(folder.join("trace.svg").display()))?;
-    files::write(&folder.join("trace.svg"), svg)?;
-    Ok(())
+    let mut contents = Contents::from([
+        ("trace.bin".into(), simulation.trace.encode()),
+        ("trace.csv".into(), csv),
+        ("metrics.json".into(), metrics.into_bytes()),
+    ]);
+    match figures::run(simulation, scenario, blob) {
+        Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
+        Err(error) => output::notice(format_args!("no trace.svg: {error}")),
+    }
+    Ok(contents)
+}
+
+/// Takes the folder of `--out` before anything is computed for it.
+fn take(folder: &Path) -> Result<FolderLock, Failure> {
+    let manifest = folder.join("manifest.json");
+    if manifest.exists() {
+        let fault =
+            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
+        return Err(about(manifest.display())(fault));
+    }
+    Ok(FolderLock::take(folder, &this_command())?)
 }
 
 fn as_json(simulation: &Simulation, number: NumberType) -> serde_json::Value {

@@ -54,6 +54,12 @@ impl FileError {
     }
 }
 
+impl From<InputError> for FileError {
+    fn from(error: InputError) -> Self {
+        FileError::new(error.file().unwrap_or(Path::new("")), error.expected())
+    }
+}
+
 /// Whether the system failed, and not what it was asked for: a full disk, a broken device, too many open files.
 pub fn is_fault_of_system(error: &io::Error) -> bool {
     use io::ErrorKind as Kind;

@@ -153,7 +153,8 @@ fn check_names<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(
 fn check_folder(key: &str, what: &str, name: &str, seen: &[(String, &str)]) -> Result<(), InputError> {
     let folder = slug(name);
     let Some((_, other)) = seen.iter().find(|(taken, _)| *taken == folder) else { return Ok(()) };
-    let expected = format!("another {what}, {other:?}, has the folder {folder} already; names must differ in letters or digits");
+    let expected =
+        format!("another {what}, {other:?}, has the folder {folder} already; names must differ in letters or digits");
     Err(InputError::new(key, format!("{name:?}"), expected))
 }
 
@@ -161,8 +162,11 @@ fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, Input
     let planned = |(place, table): (usize, MethodTable)| {
         let key = |name: &str| format!("method[{place}].{name}");
         let MethodTable { name, baseline, algorithm, motifs, de_generations, objectives, structure } = table;
-        let missing = |name: &str, of: &str| InputError::new(key(name), "", format!("is missing; algorithm \"{of}\" needs it"));
-        let foreign = |name: &str, of: &str| InputError::new(key(name), "", format!("algorithm \"{of}\" has no such key; remove it"));
+        let missing =
+            |name: &str, of: &str| InputError::new(key(name), "", format!("is missing; algorithm \"{of}\" needs it"));
+        let foreign = |name: &str, of: &str| {
+            InputError::new(key(name), "", format!("algorithm \"{of}\" has no such key; remove it"))
+        };
         let method = match algorithm {
             Algorithm::Mogp if structure.is_some() => return Err(foreign("structure", "mogp")),
             Algorithm::Mogp => {
@@ -195,19 +199,23 @@ fn planned_scenarios(
         let evaluations = EVALUATIONS.check(&key, evaluations)? as usize;
         if let Some(dear) = methods.iter().find(|planned| planned.method.least_evaluations() > evaluations) {
             let least = dear.method.least_evaluations();
-            let expected = format!("the first generation of method {:?} alone takes {least}; give so many or more", dear.name);
+            let expected =
+                format!("the first generation of method {:?} alone takes {least}; give so many or more", dear.name);
             return Err(InputError::new(key, evaluations, expected));
         }
         let key = format!("scenario[{place}].file");
         let original = world(&key, &file, folder)?;
         for scenario in vary.of(&original)? {
             let varied = scenario.name() != original.name();
-            let seen: Vec<_> = scenarios.iter().map(|other| (slug(other.scenario.name()), other.scenario.name())).collect();
+            let seen: Vec<_> =
+                scenarios.iter().map(|other| (slug(other.scenario.name()), other.scenario.name())).collect();
             check_folder(&key, "scenario", scenario.name(), &seen)?;
             scenarios.push(PlannedScenario { scenario, evaluations, varied });
         }
         if scenarios.len() > MOST_SCENARIOS {
-            let expected = format!("with its variations there are more than {MOST_SCENARIOS} worlds; make several campaigns of it");
+            let expected = format!(
+                "with its variations there are more than {MOST_SCENARIOS} worlds; make several campaigns of it"
+            );
             return Err(InputError::new(key, format!("{file:?}"), expected));
         }
     }
@@ -226,7 +234,8 @@ fn planned_model(place: usize, table: ModelTable, folder: &Path) -> Result<Plann
     let ModelTable { name, file } = table;
     let key = format!("model[{place}].file");
     let blob = read_blob(&folder.join(&file));
-    let blob = blob.map_err(|error| InputError::new(&key, format!("{file:?}"), error.to_string()).from_source(error))?;
+    let blob =
+        blob.map_err(|error| InputError::new(&key, format!("{file:?}"), error.to_string()).from_source(error))?;
     Model::new(&blob.network, 0.5).map_err(|error| InputError::new(&key, format!("{file:?}"), error.to_string()))?;
     Ok(PlannedModel { name, network: blob.network })
 }
@@ -258,7 +267,9 @@ fn planned_transfers(
             Some(random) => {
                 random_worlds += RANDOM_WORLDS.check(&key("random.worlds"), random.worlds)? as u64;
                 if random_worlds > MOST_RANDOM_WORLDS {
-                    let expected = format!("with this transfer there are {random_worlds} random worlds, of at most {MOST_RANDOM_WORLDS}");
+                    let expected = format!(
+                        "with this transfer there are {random_worlds} random worlds, of at most {MOST_RANDOM_WORLDS}"
+                    );
                     return Err(InputError::new(key("random.worlds"), random.worlds, expected));
                 }
                 let worlds = random.worlds(&key("random."), &world)?;
@@ -293,7 +304,8 @@ impl RandomTable {
         let obstacles = RandomObstacles { seed: first, density, radius, clearance };
         obstacles.check(prefix, world.region())?;
         let thrown = |seed| world.with_random_obstacles(&RandomObstacles { seed, ..obstacles });
-        let keyed = |error: InputError| InputError::new(format!("{prefix}{}", error.key()), error.value(), error.expected());
+        let keyed =
+            |error: InputError| InputError::new(format!("{prefix}{}", error.key()), error.value(), error.expected());
         (first..first + worlds as u64).map(|seed| thrown(seed).map_err(keyed)).collect()
     }
 }
@@ -314,7 +326,9 @@ fn check_work(plan: &Plan) -> Result<(), InputError> {
     ];
     match too_much.into_iter().find(|(count, most, _)| count > most) {
         Some((count, most, what)) => {
-            let expected = format!("this makes {count} {what}, of at most {most}; take fewer seeds, or make several campaigns of it");
+            let expected = format!(
+                "this makes {count} {what}, of at most {most}; take fewer seeds, or make several campaigns of it"
+            );
             Err(InputError::new("seeds", plan.seeds, expected))
         }
         None => Ok(()),

@@ -78,8 +78,16 @@ impl Variations {
                 apply: |factor, changed| changed.morphogen.obstacle_width *= factor,
             },
             Factors { name: "level", factors: level, apply: |factor, changed| changed.morphogen.level *= factor },
-            Factors { name: "steepness", factors: steepness, apply: |factor, changed| changed.ring.steepness *= factor },
-            Factors { name: "world", factors: world, apply: |factor, changed| changed.world = changed.world.scaled(factor) },
+            Factors {
+                name: "steepness",
+                factors: steepness,
+                apply: |factor, changed| changed.ring.steepness *= factor,
+            },
+            Factors {
+                name: "world",
+                factors: world,
+                apply: |factor, changed| changed.world = changed.world.scaled(factor),
+            },
         ]
     }
 

@@ -117,6 +117,11 @@ fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) ->
     move |error| Failure::new(error.into().as_ref()).about(place)
 }
 
+/// That the system gives no threads is not the fault of who asks for them.
+fn no_threads(error: impl fmt::Display) -> Failure {
+    Failure::System(format!("threads cannot be started: {error}"))
+}
+
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     let answer = match Cli::try_parse() {

@@ -1,8 +1,8 @@
 //! `grn scatter`.
 
+use super::options::within;
 use super::{Answer, Failure, output};
 use crate::files;
-use super::options::within;
 use firmware_sim::scenario::{InputError, RandomObstacles, Scenario, random};
 use std::path::PathBuf;
 

@@ -15,8 +15,8 @@ pub const MAX_WALL_POINTS: usize = 20_000;
 pub const LATTICE: [f64; 2] = [0.2, 5.0];
 /// The most nodes of that lattice: 130 MB for what is known of each and of the 16 of a finer lattice in its place.
 const MAX_NODES: f64 = (1 << 22) as f64;
-/// The most nodes times snapshots: 8 bytes each, so 130 MB; a model is judged in about a tenth of a second.
-const MAX_NODE_SNAPSHOTS: f64 = (1 << 24) as f64;
+/// The most nodes times snapshots: 8 bytes each, so 160 MB; a model is judged in about a tenth of a second.
+const MAX_NODE_SNAPSHOTS: f64 = 2e7;
 /// The most samples of the walls' outlines, and the most of them times snapshots: 16 bytes each, so 70 MB.
 const MAX_SAMPLES: f64 = 20_000.0;
 const MAX_SAMPLE_SNAPSHOTS: f64 = (1 << 22) as f64;

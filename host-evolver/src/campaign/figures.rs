@@ -32,9 +32,15 @@ pub(super) fn draw(
         (Measure::BestNodes, "nodes.svg"),
         (Measure::KneeNodes, "nodes-of-knees.svg"),
     ] {
-        draw(name, boxes(plan, &scenarios, tables, measure));
+        let panels = |panels| grn_figures::boxes(&grn_figures::BoxFigure { panels, y_label: measure.words().into() });
+        paged(name, boxes(plan, &scenarios, tables, measure), panels)
+            .into_iter()
+            .for_each(|(name, page)| draw(&name, page));
     }
-    draw("convergence.svg", grn_figures::convergence(&convergence(plan, campaign)?));
+    let y_label = Measure::Hypervolume.words();
+    let panels = |panels| grn_figures::convergence(&grn_figures::ConvergenceFigure { panels, y_label: y_label.into() });
+    let pages = paged("convergence.svg", convergence(plan, campaign)?, panels);
+    pages.into_iter().for_each(|(name, page)| draw(&name, page));
     for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
         let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
         draw(&name, grn_figures::rates(figure));
@@ -61,6 +67,24 @@ pub(super) fn draw(
     Ok(contents)
 }
 
+/// A figure of panels, on as many pages as they take; the second is called `NAME-2.svg`.
+fn paged<P: Clone>(
+    name: &str,
+    panels: Vec<P>,
+    figure: impl Fn(Vec<P>) -> Result<String, FigureError>,
+) -> Vec<(String, Result<String, FigureError>)> {
+    match figure(panels.clone()) {
+        Err(FigureError::TooMany { what: "panels", limit, .. }) if limit > 0 => {
+            let page = |(place, panels): (usize, &[P])| {
+                let name = if place == 0 { name.into() } else { name.replace(".svg", &format!("-{}.svg", place + 1)) };
+                (name, figure(panels.to_vec()))
+            };
+            panels.chunks(limit).enumerate().map(page).collect()
+        }
+        whole => vec![(name.into(), whole)],
+    }
+}
+
 /// The run whose knee has the median f2 of a method in a scenario.
 fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Option<Unit> {
     let (scenario_name, method_name) = (plan.scenarios[scenario].scenario.name(), &plan.methods[method].name);
@@ -71,12 +95,7 @@ fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Opti
     Some(Unit { scenario, method, seed })
 }
 
-fn boxes(
-    plan: &Plan,
-    scenarios: &[&PlannedScenario],
-    tables: &Tables,
-    measure: Measure,
-) -> Result<String, FigureError> {
+fn boxes(plan: &Plan, scenarios: &[&PlannedScenario], tables: &Tables, measure: Measure) -> Vec<grn_figures::BoxPanel> {
     let is_knee = matches!(measure, Measure::KneeF2 | Measure::KneeNodes);
     let value = |run: &RunRow| {
         let violation = if is_knee { run.knee_violation } else { run.best_violation };
@@ -94,11 +113,10 @@ fn boxes(
             })
             .collect(),
     };
-    let panels = scenarios.iter().map(panel).collect();
-    grn_figures::boxes(&grn_figures::BoxFigure { panels, y_label: measure.words().into() })
+    scenarios.iter().map(panel).collect()
 }
 
-fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceFigure, FileError> {
+fn convergence(plan: &Plan, campaign: &Path) -> Result<Vec<grn_figures::ConvergencePanel>, FileError> {
     let mut panels = Vec::new();
     for (scenario, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let mut series = Vec::new();
@@ -116,7 +134,7 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceF
         }
         panels.push(grn_figures::ConvergencePanel { title: planned.scenario.name().into(), series });
     }
-    Ok(grn_figures::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
+    Ok(panels)
 }
 
 fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {

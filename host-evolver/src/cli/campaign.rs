@@ -3,7 +3,7 @@
 use super::{Answer, Failure, interrupt, no_threads, options, output, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
 use grn_input::file_name;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -73,8 +73,13 @@ struct Progress {
 
 impl Progress {
     fn new(work: u64) -> Progress {
-        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed} · {eta} left");
-        let bar = ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed}{left}");
+        let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+            let left = time_left(state.pos(), state.len().unwrap_or(0), state.elapsed());
+            let _ = left.map(|left| write!(text, " · {} left", HumanDuration(left)));
+        };
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).with_key("left", left);
+        let bar = ProgressBar::new(work).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
         Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
     }
@@ -91,9 +96,18 @@ impl Listener for Progress {
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
             let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            output::notice(format_args!("{share} %, {} s left", self.bar.eta().as_secs()));
+            let left = time_left(self.bar.position(), self.bar.length().unwrap_or(0), self.bar.elapsed());
+            match left {
+                Some(left) => output::notice(format_args!("{share} %, {} s left", left.as_secs())),
+                None => output::notice(format_args!("{share} %")),
+            }
         }
     }
+}
+
+/// How long the rest will take if it goes on as it went; unknown before a hundredth is done.
+fn time_left(done: u64, of: u64, elapsed: Duration) -> Option<Duration> {
+    (done > 0 && done.saturating_mul(100) >= of).then(|| elapsed.mul_f64(of.saturating_sub(done) as f64 / done as f64))
 }
 
 /// The tables as a person reads them.

@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let obstacles = RandomObstacles { seed, density, radius, clearance };
     let world = scenario.with_random_obstacles(&obstacles).map_err(|error| {
         // Its keys are those of the options.
-        let option = format!("--{}", error.key());
+        let option = format!("--{}", error.key().split('[').next().unwrap_or_default());
         InputError::new(option, error.value(), error.expected()).in_file(&arguments.scenario)
     })?;
     match &arguments.out {

@@ -55,7 +55,7 @@ impl fmt::Display for LinkError {
             ),
             LinkError::Refused(refusal) => write!(f, "the robot refuses: {refusal}"),
             LinkError::Nonsense => {
-                f.write_str("the robot's answer cannot be read: update its firmware or this program")
+                f.write_str("the robot's answer cannot be read: update the robot's firmware or this program")
             }
         }
     }

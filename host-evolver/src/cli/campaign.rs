@@ -110,8 +110,7 @@ fn text(tables: &Tables) -> String {
             "median (quartiles)"
         );
         for row in tables.summaries.iter().filter(|row| row.measure == measure) {
-            let [lower, median, upper] = [row.lower, row.median, row.upper].map(|value| number(measure, value));
-            let quartiles = format!("{median} ({lower} to {upper})");
+            let quartiles = row.quartile_words(|value| number(measure, value));
             let feasible = format!("{}/{}", row.feasible, row.runs);
             text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
         }
@@ -132,13 +131,10 @@ fn text(tables: &Tables) -> String {
         );
     }
     if !tables.transfers.is_empty() {
-        text +=
-            &format!("\n{:<28}{:<28}{:<26}{:>9}  {}\n", "tried in", "model", "evolved for", "success", "95 % interval");
+        text += &format!("\n{:<28}{:<28}{:<26}{}\n", "tried in", "model", "evolved for", "success (95 % interval)");
     }
     for row in &tables.transfers {
-        let interval = format!("{:.1} to {:.1} %", 100.0 * row.low, 100.0 * row.high);
-        text +=
-            &format!("{:<28}{:<28}{:<26}{:>7.1} %  {interval}\n", row.transfer, row.method, row.from, 100.0 * row.rate);
+        text += &format!("{:<28}{:<28}{:<26}{}\n", row.transfer, row.method, row.from, row.rate_words());
     }
     text
 }

@@ -6,6 +6,7 @@ use crate::evaluation::World;
 use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
 use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
+use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
 use crate::run::{Manifest, Results, RunFolder};
 use clap::ValueEnum;
@@ -202,7 +203,7 @@ fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {
     for member in front {
         let further: String = member.further.iter().map(|value| format!("{value:<13.5}")).collect();
         let (nodes, f2, knee) = (member.nodes, member.f2, member.knee.to_string());
-        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression());
+        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression(Digits::Four));
     }
     text
 }

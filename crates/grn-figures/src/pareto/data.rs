@@ -1,33 +1,15 @@
 //! What a figure of a front takes.
 
 use crate::canvas::paint::Mark;
+use grn_optimisers::knee::Knee;
 
-/// By which measure a point is a knee.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KneeKind {
-    /// The angle between its neighbours (Branke et al. 2004, section 3.1).
-    Angle,
-    /// The expected marginal utility (Branke et al. 2004, section 3.2).
-    Utility,
-    /// Both.
-    Both,
-}
-
-impl KneeKind {
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Angle => "knee (angle)",
-            Self::Utility => "knee (utility)",
-            Self::Both => "knee (both)",
-        }
-    }
-
-    pub(crate) fn mark(self) -> Mark {
-        match self {
-            Self::Angle => Mark::Triangle,
-            Self::Utility => Mark::Square,
-            Self::Both => Mark::Diamond,
-        }
+/// The words and the mark of a knee; none for a point that is no knee.
+pub(crate) fn knee_look(knee: Knee) -> Option<(&'static str, Mark)> {
+    match (knee.angle, knee.utility) {
+        (true, true) => Some(("knee (both)", Mark::Diamond)),
+        (true, false) => Some(("knee (angle)", Mark::Triangle)),
+        (false, true) => Some(("knee (utility)", Mark::Square)),
+        (false, false) => None,
     }
 }
 
@@ -40,10 +22,17 @@ pub struct ParetoPoint {
     pub f2: f64,
     /// Whether every target is enclosed and every obstacle cleared.
     pub feasible: bool,
-    /// Whether it is a knee of the front.
-    pub knee: Option<KneeKind>,
+    /// By which measures it is a knee of the front; a knee is drawn as one where it is feasible.
+    pub knee: Knee,
     /// Its expression, written beside a knee.
     pub label: String,
+}
+
+impl ParetoPoint {
+    /// Whether it is marked and labelled.
+    pub(crate) fn is_knee(&self) -> bool {
+        self.feasible && self.knee != Knee::default()
+    }
 }
 
 /// A horizontal line to compare with, such as the error of a perfect circle.

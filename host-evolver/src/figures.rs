@@ -84,11 +84,11 @@ pub fn front(
     others: &[&Individual],
     ring: &Ring,
 ) -> Result<String, FigureError> {
-    if *objectives == Objectives::paper() { pareto(front, others, ring) } else { pairs(objectives, front, others) }
+    if *objectives == Objectives::paper() { pareto(front, others, ring) } else { by_pairs(objectives, front, others) }
 }
 
 /// A front in any objectives; models without a pattern, whose values are out of all proportion, are left out.
-fn pairs(objectives: &Objectives, front: &[FrontMember], others: &[&Individual]) -> Result<String, FigureError> {
+fn by_pairs(objectives: &Objectives, front: &[FrontMember], others: &[&Individual]) -> Result<String, FigureError> {
     let member = |member: &FrontMember| grn_figures::ObjectivesPoint {
         values: objectives.in_order(member.nodes as f64, member.f2, &member.further),
         non_dominated: true,

@@ -150,7 +150,10 @@ impl RunFolder {
             results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
         contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
         let mut pictures = Pictures::default();
-        pictures.add("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring()));
+        pictures.add(
+            "pareto.svg",
+            figures::front(&search.settings().objectives, &front, &search.others(), &world.scenario().ring()),
+        );
         pictures.add("tree.svg", Ok(figures::tree(&knee.network)));
         pictures.add("grn.svg", figures::grn(&knee.network));
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {

@@ -40,6 +40,7 @@ pub use grn::data::{Gene, Input, Source};
 pub use grn::figure::grn;
 pub use pareto::data::{ParetoPoint, Reference};
 pub use pareto::figure::pareto;
+pub use pareto::pairs::{ObjectivesFigure, ObjectivesPoint, objectives};
 pub use pattern::{Panel, PatternFigure, Target, pattern};
 pub use rates::{RateGroup, RateRow, RatesFigure, rates};
 pub use trace::data::{Instant, Pose, TraceFigure};

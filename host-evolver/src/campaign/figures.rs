@@ -42,7 +42,10 @@ pub(super) fn draw(
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            pictures.add(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()));
+            pictures.add(
+                &name("pareto"),
+                figures::front(&planned_method.method.objectives(), &front, &[], &planned.scenario.ring()),
+            );
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
             pictures.add(&name("tree"), Ok(figures::tree(&network)));
             pictures.add(&name("grn"), figures::grn(&network));

@@ -2,6 +2,7 @@
 
 use crate::evolve::{FrontMember, Milestone, Objectives, deployed};
 use crate::files::{self, Contents, FileError, read_blob};
+use crate::model::notation::Digits;
 use grn_core::blob::Blob;
 use grn_optimisers::knee::Knee;
 use std::path::Path;
@@ -52,7 +53,7 @@ fn front_csv(objectives: &Objectives, front: &[FrontMember], blobs: &[String]) -
     let row = |(member, blob): (&FrontMember, &String)| {
         let numbers = [member.nodes as f64, member.f2].into_iter().chain(member.further.iter().copied());
         let numbers = numbers.chain([member.violation]).map(|number| number.to_string());
-        numbers.chain([member.knee.to_string(), member.expression(), blob.clone()]).collect::<Vec<_>>()
+        numbers.chain([member.knee.to_string(), member.expression(Digits::All), blob.clone()]).collect::<Vec<_>>()
     };
     files::csv(header, front.iter().zip(blobs).map(row))
 }

@@ -10,10 +10,9 @@ pub use manifest::Manifest;
 
 use crate::evaluation::{Model, World};
 use crate::evolve::{FrontMember, Search, State};
-use crate::figures;
-use crate::files::{self, Contents, FileError, FolderLock};
+use crate::figures::{self, Pictures};
+use crate::files::{self, Contents, FileError, FolderLock, Ledger};
 use crate::model::deploy;
-use crate::model::describe;
 use crate::results;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
@@ -150,37 +149,38 @@ impl RunFolder {
         let (mut contents, knee) =
             results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
         contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
-        let mut figures = vec![
-            ("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring())),
-            ("tree.svg", grn_figures::tree(&describe::syntax_tree(&knee.network))),
-            ("grn.svg", grn_figures::grn(&describe::graph(&knee.network))),
-        ];
+        let mut pictures = Pictures::default();
+        pictures.add(
+            "pareto.svg",
+            figures::front(&search.settings().objectives, &front, &search.others(), &world.scenario().ring()),
+        );
+        pictures.add("tree.svg", Ok(figures::tree(&knee.network)));
+        pictures.add("grn.svg", figures::grn(&knee.network));
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
-            figures.push(("pattern.svg", figures::pattern(world, &model)));
+            pictures.add("pattern.svg", figures::pattern(world, &model));
         }
-        let mut not_drawn = Vec::new();
-        for (name, figure) in figures {
-            match figure {
-                Ok(svg) => {
-                    contents.insert(name.into(), svg.into_bytes());
-                }
-                Err(error) => not_drawn.push(format!("no {name}: {error}")),
-            }
-        }
+        contents.extend(pictures.contents);
+        let not_drawn = pictures.not_drawn;
         Ok(Results { contents, knee, not_drawn })
     }
 
-    /// Brings the folder to hold these results and nothing of a shorter run; `finished` if nothing else is to come.
+    /// Writes results to which others are to come.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn publish(&mut self, contents: &Contents, finished: bool) -> Result<(), FileError> {
-        let write = |files: &files::Ledger, whole: bool| {
-            self.write_manifest(&Manifest {
-                files: files.clone(),
-                finished: finished && whole,
-                ..self.manifest.clone()
-            })
+    pub fn add(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger| self.write_manifest(&Manifest { files: files.clone(), ..self.manifest.clone() });
+        self.manifest.files = self.manifest.files.add(self.lock.folder(), contents, write)?;
+        Ok(())
+    }
+
+    /// Brings the folder to hold these results, all of them, and nothing of a shorter run.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger, finished: bool| {
+            self.write_manifest(&Manifest { files: files.clone(), finished, ..self.manifest.clone() })
         };
         self.manifest.files = self.manifest.files.publish(self.lock.folder(), contents, write)?;
         Ok(())

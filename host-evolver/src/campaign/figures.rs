@@ -5,9 +5,8 @@ use super::tables::{Measure, RunRow, Tables, TransferRow};
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
-use crate::figures::{self, pattern};
+use crate::figures::{self, Pictures};
 use crate::files::{Contents, FileError, read_blob};
-use crate::model::describe;
 use grn_figures::FigureError;
 use grn_optimisers::statistics::quartiles;
 use std::path::Path;
@@ -21,29 +20,19 @@ pub(super) fn draw(
     notice: &dyn Fn(&str),
 ) -> Result<Contents, FileError> {
     let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
-    let mut contents = Contents::new();
-    let mut draw = |name: &str, figure: Result<String, FigureError>| match figure {
-        Ok(svg) => drop(contents.insert(name.into(), svg.into_bytes())),
-        Err(error) => notice(&format!("no {name}: {error}")),
-    };
-    for (measure, name) in [
-        (Measure::KneeF2, "f2-of-knees.svg"),
-        (Measure::BestF2, "f2.svg"),
-        (Measure::BestNodes, "nodes.svg"),
-        (Measure::KneeNodes, "nodes-of-knees.svg"),
+    let mut pictures = Pictures::default();
+    for (measure, stem) in [
+        (Measure::KneeF2, "f2-of-knees"),
+        (Measure::BestF2, "f2"),
+        (Measure::BestNodes, "nodes"),
+        (Measure::KneeNodes, "nodes-of-knees"),
     ] {
-        let panels = |panels| grn_figures::boxes(&grn_figures::BoxFigure { panels, y_label: measure.words().into() });
-        paged(name, boxes(plan, &scenarios, tables, measure), panels)
-            .into_iter()
-            .for_each(|(name, page)| draw(&name, page));
+        pictures.add_pages(stem, boxes(plan, &scenarios, tables, measure));
     }
-    let y_label = Measure::Hypervolume.words();
-    let panels = |panels| grn_figures::convergence(&grn_figures::ConvergenceFigure { panels, y_label: y_label.into() });
-    let pages = paged("convergence.svg", convergence(plan, campaign)?, panels);
-    pages.into_iter().for_each(|(name, page)| draw(&name, page));
-    for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
-        let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
-        draw(&name, grn_figures::rates(figure));
+    pictures.add_pages("convergence", grn_figures::convergence(&convergence(plan, campaign)?));
+    let rates = rates(plan, tables);
+    if !rates.groups.is_empty() {
+        pictures.add_pages("transfers", grn_figures::rates(&rates));
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -53,36 +42,20 @@ pub(super) fn draw(
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            if front.iter().any(|member| member.is_feasible()) {
-                draw(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()));
-            }
+            pictures.add(
+                &name("pareto"),
+                figures::front(&planned_method.method.objectives(), &front, &[], &planned.scenario.ring()),
+            );
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
-            draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)));
-            draw(&name("grn"), grn_figures::grn(&describe::graph(&network)));
+            pictures.add(&name("tree"), Ok(figures::tree(&network)));
+            pictures.add(&name("grn"), figures::grn(&network));
             if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
-                draw(&name("pattern"), pattern(&world, &model));
+                pictures.add(&name("pattern"), figures::pattern(&world, &model));
             }
         }
     }
-    Ok(contents)
-}
-
-/// A figure of panels, on as many pages as they take; the second is called `NAME-2.svg`.
-fn paged<P: Clone>(
-    name: &str,
-    panels: Vec<P>,
-    figure: impl Fn(Vec<P>) -> Result<String, FigureError>,
-) -> Vec<(String, Result<String, FigureError>)> {
-    match figure(panels.clone()) {
-        Err(FigureError::TooMany { what: "panels", limit, .. }) if limit > 0 => {
-            let page = |(place, panels): (usize, &[P])| {
-                let name = if place == 0 { name.into() } else { name.replace(".svg", &format!("-{}.svg", place + 1)) };
-                (name, figure(panels.to_vec()))
-            };
-            panels.chunks(limit).enumerate().map(page).collect()
-        }
-        whole => vec![(name.into(), whole)],
-    }
+    pictures.not_drawn.iter().for_each(|line| notice(line));
+    Ok(pictures.contents)
 }
 
 /// The run whose knee has the median f2 of a method in a scenario.
@@ -95,7 +68,12 @@ fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Opti
     Some(Unit { scenario, method, seed })
 }
 
-fn boxes(plan: &Plan, scenarios: &[&PlannedScenario], tables: &Tables, measure: Measure) -> Vec<grn_figures::BoxPanel> {
+fn boxes(
+    plan: &Plan,
+    scenarios: &[&PlannedScenario],
+    tables: &Tables,
+    measure: Measure,
+) -> Result<Vec<String>, FigureError> {
     let is_knee = matches!(measure, Measure::KneeF2 | Measure::KneeNodes);
     let value = |run: &RunRow| {
         let violation = if is_knee { run.knee_violation } else { run.best_violation };
@@ -113,10 +91,11 @@ fn boxes(plan: &Plan, scenarios: &[&PlannedScenario], tables: &Tables, measure: 
             })
             .collect(),
     };
-    scenarios.iter().map(panel).collect()
+    let panels = scenarios.iter().map(panel).collect();
+    grn_figures::boxes(&grn_figures::BoxFigure { panels, y_label: measure.words().into() })
 }
 
-fn convergence(plan: &Plan, campaign: &Path) -> Result<Vec<grn_figures::ConvergencePanel>, FileError> {
+fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceFigure, FileError> {
     let mut panels = Vec::new();
     for (scenario, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let mut series = Vec::new();
@@ -134,19 +113,24 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<Vec<grn_figures::Converge
         }
         panels.push(grn_figures::ConvergencePanel { title: planned.scenario.name().into(), series });
     }
-    Ok(panels)
+    Ok(grn_figures::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
 }
 
 fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
     let is_varied =
         |row: &TransferRow| plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer);
     let mut groups: Vec<grn_figures::RateGroup> = Vec::new();
-    for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1 && !is_varied(row)) {
+    for row in tables.transfers.iter().filter(|row| row.trials() > 1 && !is_varied(row)) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),
         };
-        let line = grn_figures::RateRow { label: row.method.clone(), rate: row.rate, interval: (row.low, row.high) };
+        let line = grn_figures::RateRow {
+            label: row.method.clone(),
+            successes: row.successes as u64,
+            trials: row.trials() as u64,
+            interval: row.low.zip(row.high),
+        };
         match groups.iter_mut().find(|group| group.title == title) {
             Some(group) => group.rows.push(line),
             None => groups.push(grn_figures::RateGroup { title, rows: vec![line] }),

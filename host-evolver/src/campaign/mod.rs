@@ -168,6 +168,9 @@ impl Campaign {
     /// A unit that was made from something else, or a file that cannot be read or written.
     pub fn run(&self, shard: Shard, stop: &AtomicBool, listener: &dyn Listener) -> Result<Stage, FileError> {
         let units = Unit::all(&self.plan);
+        for name in self.runs_of_others()? {
+            listener.notice(&format!("{name}: of another state of the campaign: kept, and in no table"));
+        }
         // What is refused is refused before the first run.
         let found: Vec<Found> =
             units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
@@ -197,6 +200,26 @@ impl Campaign {
         contents.extend(tables.contents());
         self.manifest.publish(self.folder(), &contents)?;
         Ok(Stage::Done(Box::new(tables)))
+    }
+
+    /// Folders of runs of scenarios and methods that the campaign has no longer. They took long, so they are kept.
+    fn runs_of_others(&self) -> Result<Vec<String>, FileError> {
+        let runs = self.folder().join("runs");
+        if !runs.exists() {
+            return Ok(Vec::new());
+        }
+        let ours: Vec<PathBuf> = Unit::all(&self.plan).iter().map(|unit| unit.folder(&self.plan)).collect();
+        let mut others = Vec::new();
+        for (scenario, entry) in files::entries(&runs)? {
+            let methods = if entry.path().is_dir() { files::entries(&entry.path())? } else { Vec::new() };
+            for (method, _) in methods {
+                let folder = Path::new("runs").join(&scenario).join(method);
+                if !ours.iter().any(|ours| ours.starts_with(&folder)) {
+                    others.push(self.folder().join(folder).display().to_string());
+                }
+            }
+        }
+        Ok(others)
     }
 
     /// The trials by group and world; `None` if stopped.

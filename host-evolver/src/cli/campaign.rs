@@ -15,7 +15,8 @@ const SELDOM: Duration = Duration::from_secs(30);
 pub struct Arguments {
     /// The campaign: scenarios, methods, models, transfers, seeds.
     file: PathBuf,
-    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    /// Folder of the campaign, new, empty, or with this campaign, which may have got more seeds: runs that are there whole are
+    /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
@@ -127,8 +128,7 @@ fn text(tables: &Tables) -> String {
             "median (quartiles)"
         );
         for row in tables.summaries.iter().filter(|row| row.measure == measure) {
-            let [lower, median, upper] = [row.lower, row.median, row.upper].map(|value| number(measure, value));
-            let quartiles = format!("{median} ({lower} to {upper})");
+            let quartiles = row.quartile_words(|value| number(measure, value));
             let feasible = format!("{}/{}", row.feasible, row.runs);
             text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
         }
@@ -149,13 +149,10 @@ fn text(tables: &Tables) -> String {
         );
     }
     if !tables.transfers.is_empty() {
-        text +=
-            &format!("\n{:<28}{:<28}{:<26}{:>9}  {}\n", "tried in", "model", "evolved for", "success", "95 % interval");
+        text += &format!("\n{:<28}{:<28}{:<26}{}\n", "tried in", "model", "evolved for", "success (95 % interval)");
     }
     for row in &tables.transfers {
-        let interval = format!("{:.1} to {:.1} %", 100.0 * row.low, 100.0 * row.high);
-        text +=
-            &format!("{:<28}{:<28}{:<26}{:>7.1} %  {interval}\n", row.transfer, row.method, row.from, 100.0 * row.rate);
+        text += &format!("{:<28}{:<28}{:<26}{}\n", row.transfer, row.method, row.from, row.rate_words());
     }
     text
 }

@@ -6,6 +6,7 @@ use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
 use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
+use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
 use crate::run::{Manifest, Results, RunFolder};
 use clap::ValueEnum;
@@ -29,7 +30,7 @@ pub struct Arguments {
     /// Threads to work with, up to 8 a core; the result does not depend on it [default: all cores].
     #[arg(long, value_parser = options::threads)]
     threads: Option<NonZeroUsize>,
-    /// Budget: evaluations of f2.
+    /// Budget: evaluations of f2; with --resume it may be larger than before.
     #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
@@ -41,10 +42,10 @@ pub struct Arguments {
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale)]
     scale: f32,
-    /// Folder of the run [default: runs/SCENARIO-seed-N, or the next free name].
+    /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Continue the run in the folder.
+    /// Continue the run in the folder, to the same files as if it had never stopped.
     #[arg(long)]
     resume: bool,
 }
@@ -86,11 +87,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let front = search.front();
     let is_feasible = front.iter().all(|member| member.is_feasible());
     let Results { mut contents, knee, not_drawn } = run.results(&search, &world, arguments.scale)?;
-    run.publish(&contents, !is_feasible)?;
+    run.add(&contents)?;
     not_drawn.iter().for_each(output::notice);
     output::report(front_table(&settings.objectives, &front));
     output::report(format!("\nresults in {}\n", folder.display()));
     if !is_feasible {
+        run.finish(&contents)?;
         output::report(infeasible(&world, &front));
         return Ok(Answer::No);
     }
@@ -99,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
         contents.insert(format!("simulation/{name}"), content);
     }
-    run.publish(&contents, true)?;
+    run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
@@ -236,7 +238,7 @@ fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {
     for member in front {
         let further: String = member.further.iter().map(|value| format!("{value:<13.5}")).collect();
         let (nodes, f2, knee) = (member.nodes, member.f2, member.knee.to_string());
-        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression());
+        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression(Digits::Four));
     }
     text
 }

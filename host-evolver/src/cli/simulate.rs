@@ -5,7 +5,7 @@ use super::{Answer, Failure, about, interrupt, options, output, this_command};
 use crate::emulation::{self, Emulation};
 use crate::figures;
 use crate::files::{self, Contents, FolderLock, read_blob};
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Simulation, SimulationError};
+use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
 use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
@@ -25,7 +25,20 @@ const DEFAULT_EMULATED: usize = 4;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
 pub const DEFAULT_SPEED: f64 = 0.03;
 
+const BARS: &str = "\
+A run works (exit code 0) if all of this holds:
+  encircled         every target, in at least 98 % of the moments after the swarm formed
+  radial error      its median is below 10 % of the ring's radius; unknown distances are longer than any other
+  distance unknown  in at most 5 % of the robots' moments: no point of the pattern is found, or only one farther than two
+                    ring radii from every target, on a contour that follows walls
+  robots lost       none is off the pattern at the end: farther from it than half a ring radius and from every target
+                    than 1.5 ring radii, for 5 s already
+  robots strayed    none was off the pattern for 5 s and came back
+  wall contacts     none
+  peer contacts     at most one for each robot";
+
 #[derive(clap::Args)]
+#[command(after_help = BARS)]
 pub struct Arguments {
     /// The controller.
     blob: PathBuf,
@@ -253,12 +266,28 @@ pub fn table(simulation: &Simulation) -> String {
         ),
         (
             "median radial error / ring",
-            percent(simulation.radial_error_share()),
+            match simulation.radial_error_share() {
+                None if metrics.formed_at_s.is_some() => "unknown".into(),
+                share => percent(share),
+            },
             format!("below {:.0} %", ENOUGH_ACCURACY * 100.0),
             mark(verdict.accurate),
         ),
+        (
+            "distance unknown",
+            percent(metrics.radial_error_unknown_share),
+            format!("at most {:.0} %", ENOUGH_UNKNOWN * 100.0),
+            mark(verdict.known),
+        ),
+        ("robots lost", metrics.lost_robots.to_string(), "none".into(), mark(verdict.none_lost)),
+        ("robots strayed", metrics.strayed_robots.to_string(), "none".into(), mark(verdict.none_strayed)),
         ("wall contacts", metrics.wall_contacts.to_string(), "none".into(), mark(verdict.clear_of_walls)),
-        ("peer contacts", metrics.peer_contacts.to_string(), String::new(), ""),
+        (
+            "peer contacts",
+            metrics.peer_contacts.to_string(),
+            format!("at most {}", simulation.allowed_peer_contacts()),
+            mark(verdict.clear_of_peers),
+        ),
         ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
         ("works", String::new(), String::new(), mark(verdict.works())),
     ];

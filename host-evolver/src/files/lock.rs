@@ -3,7 +3,7 @@
 //! The lock is the operating system's own on a small file in the folder, so it ends with its holder, however that dies. The
 //! file says who holds it; alone it means nothing.
 
-use super::FileError;
+use super::error::FileError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -8,6 +8,7 @@ mod figures;
 mod manifest;
 mod method;
 mod plan;
+mod rows;
 mod tables;
 mod trial;
 mod unit;
@@ -15,7 +16,8 @@ mod vary;
 
 pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
-pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
+pub use rows::{Comparison, Measure, RunRow, Summary, TransferRow};
+pub use tables::Tables;
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 

@@ -1,6 +1,7 @@
 //! How trees come to be and change: ramped half-and-half, subtree crossover, subtree mutation.
 
-use crate::model::tree::{Node, Terminal, Tree, children_of};
+use super::notation::Terminal;
+use super::tree::{Node, Tree, children_of};
 use grn_core::motif::Motif;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};

@@ -33,7 +33,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use trial::Group;
 
-/// One part of a campaign of which there are several: number 2 of 3 does runs 2, 5, 8, ….
+/// One of several parts of a campaign, for several machines: part 2 of 3 does runs 2, 5, 8, ….
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -88,7 +88,7 @@ impl fmt::Display for Stage {
 
 /// Hears how a campaign goes.
 pub trait Listener: Sync {
-    /// A unit is done that was worth so many evaluations of f2.
+    /// A unit is done; it cost this many evaluations of f2.
     fn done(&self, evaluations: u64);
     /// Something that the user should know.
     fn notice(&self, text: &str);

@@ -59,7 +59,7 @@ fn assert_answer(output: &Output, code: i32, words: &[&str]) {
 fn a_robot_is_listed_flashed_and_tried() -> Outcome {
     let port = robot()?;
     let (old, new) = (model("nand-xnor"), model("andn-nand-xnor"));
-    assert_answer(&grn(&["robots", &port])?, 0, &["robot 7", "F32", "slot 0: empty", "slot 1: empty"]);
+    assert_answer(&grn(&["robots", &port])?, 0, &["robot 7", "f32", "slot 0: empty", "slot 1: empty"]);
     assert_answer(&grn(&["flash", &old, "--to", &port, "--dry-run"])?, 0, &["nothing is sent", "chunk at 64"]);
     assert_answer(&grn(&["robots", &port])?, 0, &["slot 0: empty"]);
     assert_answer(&grn(&["flash", &old, "--to", &port])?, 0, &["robot 7 is in charge"]);

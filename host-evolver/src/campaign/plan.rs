@@ -35,7 +35,7 @@ pub struct PlannedScenario {
 pub struct PlannedMethod {
     /// Its name.
     pub name: String,
-    /// Whether the others are compared with it.
+    /// Whether it is a baseline: all methods that are none are compared with it.
     pub baseline: bool,
     /// What it does.
     pub method: Method,

@@ -9,6 +9,7 @@ pub mod evolve;
 pub mod figures;
 pub mod files;
 pub mod model;
+pub mod quoting;
 pub mod run;
 pub mod sectors;
 pub mod simulation;

@@ -2,7 +2,7 @@
 
 use super::{Answer, Failure, about, print};
 use crate::sectors::Sector;
-use crate::slot_file::SlotFile;
+use crate::slot_file::{Programmer, SlotFile, SlotPaths};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::MAX_WIRE;
 use grn_core::robot::link::message::{About, MAX_CHUNK, encode_request};
@@ -45,8 +45,8 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "to")]
     sequence: Option<u32>,
     /// Serial port of the robot's programmer, for flash.gdb.
-    #[arg(long, default_value = "/dev/ttyACM0", conflicts_with = "to")]
-    programmer: String,
+    #[arg(long, default_value = Programmer::DEFAULT, conflicts_with = "to")]
+    programmer: Programmer,
     /// Only say what would be sent or written.
     #[arg(long)]
     dry_run: bool,
@@ -148,16 +148,18 @@ fn write(folder: &std::path::Path, bytes: &[u8], arguments: &Arguments) -> Resul
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs() as u32);
     let sequence = arguments.sequence.unwrap_or(now);
     let file = SlotFile::new(bytes, arguments.address, sequence).map_err(about(arguments.blob.display()))?;
-    let names = SlotFile::names(folder);
+    let paths = SlotPaths::in_folder(folder)?;
     let would = if arguments.dry_run { "would be written" } else { "written" };
     let last = file.address + file.bytes.len() as u32 - 1;
     if !arguments.dry_run {
-        file.write(folder, &arguments.programmer)?;
+        file.write(&paths, &arguments.programmer)?;
     }
     print(format!("{:#010x} to {last:#010x}, upload number {sequence}; {would}:", file.address))?;
-    print(format!("  {}, {}", names.hex.display(), names.binary.display()))?;
+    for name in SlotPaths::NAMES {
+        print(format!("  {}", folder.join(name).display()))?;
+    }
     print(format!("with the e-puck2's programmer on {}:", arguments.programmer))?;
-    print(format!("  arm-none-eabi-gdb --batch --command {}", names.gdb.display()))?;
-    print(format!("over USB DFU:\n  {}", file.dfu_line(&names.binary)))?;
+    print(format!("  {}", paths.gdb_line()))?;
+    print(format!("over USB DFU:\n  {}", file.dfu_line(&paths)))?;
     Ok(Answer::Yes)
 }

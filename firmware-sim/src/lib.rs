@@ -43,6 +43,6 @@ pub mod trace;
 pub use brain::{Brain, BrainError};
 pub use config::{ConfigError, SwarmConfig};
 pub use metrics::{Metrics, MetricsOptions};
-pub use scenario::{Scenario, ScenarioError};
+pub use scenario::{InputError, Scenario};
 pub use swarm::{Outcome, Progress, StepError, Swarm};
 pub use trace::{Trace, TraceError};

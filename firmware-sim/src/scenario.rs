@@ -2,12 +2,13 @@
 //!
 //! Lengths are the model's metres; [`Scenario::scaled`] gives the same world in a laboratory's metres.
 
-mod error;
 mod file;
+pub mod limits;
 mod path;
 mod random;
 
-pub use error::ScenarioError;
+pub use grn_input::InputError;
+pub use limits::MAX_SNAPSHOTS;
 pub use path::Path;
 pub use random::RandomObstacles;
 
@@ -15,38 +16,37 @@ use crate::geometry::Walls;
 use file::ScenarioFile;
 use grn_core::field::Kernel;
 use grn_core::geometry::Point;
+use grn_input::Found;
 use serde::{Deserialize, Serialize};
 
 /// Arc length between two samples of a wall's outline, metres.
 pub const OBSTACLE_SPACING: f64 = 0.5;
 /// How far a mother robot perceives targets and walls, metres; samples farther from every target do not count.
 pub const PERCEPTION_RANGE: f64 = 5.0;
-/// The most snapshots a scenario may ask for.
-pub const MAX_SNAPSHOTS: usize = 10_000;
 
 /// How targets and walls turn into the morphogens x1 and x2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Morphogen {
     /// How concentration falls with distance.
     pub kernel: Kernel,
-    /// σ_t, metres, positive.
+    /// σ_t, metres, in [`limits::WIDTH`].
     pub target_width: f64,
-    /// σ_o, metres, positive.
+    /// σ_o, metres, in [`limits::WIDTH`].
     pub obstacle_width: f64,
-    /// c, the pattern's level as a share of the range from M(0,0) to M(1,0), within (0, 1).
+    /// c, the pattern's level as a share of the range from M(0,0) to M(1,0), in [`limits::LEVEL`].
     pub level: f64,
 }
 
 /// Where the ring is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    /// Nearest wanted distance from a target, metres, at least 0.
+    /// Nearest wanted distance from a target, metres, in [`limits::DISTANCE`].
     pub d_min: f64,
-    /// Farthest wanted distance from a target, metres, above `d_min`.
+    /// Farthest wanted distance from a target, metres, above `d_min`, in [`limits::DISTANCE`] and no longer than the region.
     pub d_max: f64,
-    /// Wanted distance from walls, metres, at least 0.
+    /// Wanted distance from walls, metres, in [`limits::DISTANCE`].
     pub d_obstacle: f64,
-    /// k1 = k2 = k3: how sharply the objective punishes, per metre, positive.
+    /// k1 = k2 = k3: how sharply the objective punishes, per metre, in [`limits::STEEPNESS`].
     pub steepness: f64,
 }
 
@@ -67,22 +67,24 @@ impl Scenario {
     /// Reads and checks a TOML file.
     ///
     /// # Errors
-    /// [`ScenarioError`], naming the file, when it cannot be read or [`Scenario::parse`] rejects it.
-    pub fn load(path: impl AsRef<std::path::Path>) -> Result<Scenario, ScenarioError> {
+    /// [`InputError`], naming the file, when it cannot be read or [`Scenario::parse`] rejects it.
+    pub fn load(path: impl AsRef<std::path::Path>) -> Result<Scenario, InputError> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path).map_err(|error| ScenarioError::unreadable(path, &error))?;
-        Scenario::parse(&text).map_err(|error| error.in_file(path))
+        let text = grn_input::read_text(path, Found::Scenario)?;
+        Scenario::parse(&text).map_err(|error| match Found::of(text.as_bytes()) {
+            found @ Found::Campaign => InputError::new("", "", found.instead_of(Found::Scenario)).in_file(path),
+            _ => error.in_file(path),
+        })
     }
 
     /// Checks TOML text.
     ///
     /// # Errors
-    /// [`ScenarioError`] for text that is not TOML, unknown or missing keys, numbers that are not finite or out of the
-    /// ranges documented on this type's parts, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS),
-    /// paths that enter a wall, and polygons that are none.
-    pub fn parse(text: &str) -> Result<Scenario, ScenarioError> {
-        let file: ScenarioFile = toml::from_str(text).map_err(|error| ScenarioError::toml(text, &error))?;
-        Scenario::try_from(file)
+    /// [`InputError`] for text that is not TOML, unknown or missing keys, numbers out of the ranges in [`limits`], alone or
+    /// together, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS), two targets on the same
+    /// path, paths that leave the region or enter a wall, and polygons that are none.
+    pub fn parse(text: &str) -> Result<Scenario, InputError> {
+        grn_input::parse(text.trim_start_matches('\u{feff}'), |file: ScenarioFile| Scenario::try_from(file))
     }
 
     /// The canonical TOML text; parsing it gives an equal scenario.
@@ -160,7 +162,7 @@ impl Scenario {
     ///
     /// # Errors
     /// A number out of range.
-    pub fn with(&self, name: &str, morphogen: Morphogen, ring: Ring) -> Result<Scenario, ScenarioError> {
+    pub fn with(&self, name: &str, morphogen: Morphogen, ring: Ring) -> Result<Scenario, InputError> {
         let changed = Scenario { name: name.to_owned(), morphogen, ring, ..self.clone() };
         Scenario::try_from(ScenarioFile::from(changed))
     }

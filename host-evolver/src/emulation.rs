@@ -1,15 +1,14 @@
 //! Processor in the loop: the controllers of a swarm's first robots run in QEMU, from the image that is flashed.
 
 use crate::files::blob_bytes;
-use crate::simulation::{Number, Simulation, SimulationError, native, run};
+use crate::simulation::{Simulation, SimulationError, native, run};
 use firmware_sim::brain::Brain;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::qemu::Emulator;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
-use grn_core::robot::link::message::Arithmetic;
-use grn_core::scalar::Q8_24;
+use grn_core::scalar::{NumberType, Q8_24};
 use grn_link::{Client, Patience};
 use std::fmt;
 use std::ops::ControlFlow;
@@ -32,7 +31,7 @@ pub fn simulate(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
-    number: Number,
+    number: NumberType,
     emulation: &Emulation,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
@@ -41,8 +40,8 @@ pub fn simulate(
     let emulated = (0..emulation.robots).map(|robot| emulation.start(robot, sockets.path(), blob, number));
     let emulated = emulated.collect::<Result<Vec<_>, _>>()?;
     match number {
-        Number::F32 => run(blob, scenario, config, mixed(emulated, native::<f32>(blob)?), watch),
-        Number::Q824 => run(blob, scenario, config, mixed(emulated, native::<Q8_24>(blob)?), watch),
+        NumberType::F32 => run(blob, scenario, config, mixed(emulated, native::<f32>(blob)?), watch),
+        NumberType::Q8_24 => run(blob, scenario, config, mixed(emulated, native::<Q8_24>(blob)?), watch),
     }
 }
 
@@ -61,18 +60,14 @@ impl Emulation {
         robot: usize,
         sockets: &Path,
         blob: &Blob,
-        number: Number,
+        number: NumberType,
     ) -> Result<Box<dyn Brain>, SimulationError> {
         let fault = |error: &dyn fmt::Display| SimulationError::Emulator(format!("emulated robot {robot}: {error}"));
         let emulator = Emulator::start(&self.image, sockets.join(robot.to_string())).map_err(|error| fault(&error))?;
         let (client, about) = Client::connect(emulator, Patience::default()).map_err(|error| fault(&error))?;
-        let wanted = match number {
-            Number::F32 => Arithmetic::F32,
-            Number::Q824 => Arithmetic::Q8_24,
-        };
-        if about.arithmetic != wanted {
-            let (image, found) = (self.image.display(), about.arithmetic);
-            return Err(fault(&format!("{image} computes in {found:?}, not {wanted:?}; choose another with --image")));
+        if about.number_type != number {
+            let (image, found) = (self.image.display(), about.number_type);
+            return Err(fault(&format!("{image} computes in {found}, not {number}; choose another with --image")));
         }
         let bytes = blob_bytes(blob).map_err(|error| fault(&error))?;
         let brain = RemoteBrain::start(client, &bytes, blob.identity(), robot as u8).map_err(|error| fault(&error))?;

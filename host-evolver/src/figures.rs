@@ -1,7 +1,8 @@
 //! From models, worlds and runs to the plain data that figures are drawn from.
 
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
-use crate::evolve::{FrontMember, Individual, Knee};
+use crate::evolve::{FrontMember, Individual};
+use crate::model::describe;
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
 use firmware_sim::metrics::largest_gap;
@@ -11,6 +12,7 @@ use grn_core::blob::Blob;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::BODY_RADIUS;
 use grn_figures::{FigureError, KneeKind, Window};
+use grn_optimisers::knee::Knee;
 
 fn pair(point: Point<f64>) -> [f64; 2] {
     [point.x, point.y]
@@ -37,57 +39,44 @@ pub fn perfect_circle(ring: &Ring) -> f64 {
 const NEARBY_F2: f64 = 1.25;
 const NEARBY_NODES: usize = 3;
 
-/// The Pareto front among the last population, knees named.
+/// The front among other models of its last population, knees named, beside a perfect circle's f2.
 ///
 /// # Errors
-/// An empty front.
-pub fn pareto(front: &[FrontMember], population: &[Individual], ring: &Ring) -> Result<String, FigureError> {
-    let point = |individual: &Individual, knee: Option<KneeKind>| grn_figures::ParetoPoint {
+/// No feasible model, or numbers that cannot be drawn.
+pub fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Result<String, FigureError> {
+    let most_nodes = front.iter().map(|member| member.nodes).max().unwrap_or(0);
+    let worst_f2 = front.iter().map(|member| member.f2).fold(0.0, f64::max);
+    let is_near = |individual: &&&Individual| {
+        individual.f2 <= NEARBY_F2 * worst_f2 && individual.tree.size() <= NEARBY_NODES * most_nodes
+    };
+    let member = |member: &FrontMember| grn_figures::ParetoPoint {
+        nodes: member.nodes as u32,
+        f2: member.f2,
+        feasible: member.is_feasible(),
+        knee: knee_kind(member),
+        label: describe::without_theta(&member.expression()),
+    };
+    let other = |individual: &&Individual| grn_figures::ParetoPoint {
         nodes: individual.tree.size() as u32,
         f2: individual.f2,
         feasible: individual.is_feasible(),
-        knee,
-        label: short_expression(individual),
+        knee: None,
+        label: describe::without_theta(&individual.tree.to_string()),
     };
-    let is_member = |individual: &Individual| front.iter().any(|member| member.individual == *individual);
-    let most_nodes = front.iter().map(|member| member.individual.tree.size()).max().unwrap_or(0);
-    let worst_f2 = front.iter().map(|member| member.individual.f2).fold(0.0, f64::max);
-    let is_near = |individual: &Individual| {
-        individual.f2 <= NEARBY_F2 * worst_f2 && individual.tree.size() <= NEARBY_NODES * most_nodes
-    };
-    let members = front.iter().map(|member| point(&member.individual, knee_kind(member)));
-    let others = population.iter().filter(|other| !is_member(other) && is_near(other)).map(|other| point(other, None));
-    pareto_of(&members.chain(others).collect::<Vec<_>>(), ring)
-}
-
-/// A Pareto front from its points, beside a perfect circle's f2.
-///
-/// # Errors
-/// No feasible point, or numbers that cannot be drawn.
-pub fn pareto_of(points: &[grn_figures::ParetoPoint], ring: &Ring) -> Result<String, FigureError> {
+    let points = front.iter().map(member).chain(others.iter().filter(is_near).map(other));
     let best = perfect_circle(ring);
     let reference = grn_figures::Reference { f2: best, label: format!("perfect circle in free space, {best:.5}") };
-    grn_figures::pareto(points, "", Some(&reference))
+    grn_figures::pareto(&points.collect::<Vec<_>>(), "", Some(&reference))
 }
 
 fn knee_kind(member: &FrontMember) -> Option<KneeKind> {
     let Knee { angle, utility } = member.knee;
-    match (angle && member.individual.is_feasible(), utility && member.individual.is_feasible()) {
+    match (angle && member.is_feasible(), utility && member.is_feasible()) {
         (true, true) => Some(KneeKind::Both),
         (true, false) => Some(KneeKind::Angle),
         (false, true) => Some(KneeKind::Utility),
         (false, false) => None,
     }
-}
-
-/// The expression without θ and in function notation: `XNOR(NAND(x1, x1), x2)`.
-fn short_expression(individual: &Individual) -> String {
-    let Ok(network) = individual.tree.network(1.0) else { return individual.tree.to_string() };
-    fn write(tree: &grn_figures::SyntaxTree) -> String {
-        let operands: Vec<String> = tree.children.iter().map(write).collect();
-        if operands.is_empty() { tree.label.clone() } else { format!("{}({})", tree.label, operands.join(", ")) }
-    }
-    write(&crate::model::describe::syntax_tree(&network))
 }
 
 /// The pattern at each snapshot.

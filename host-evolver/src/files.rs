@@ -5,7 +5,7 @@ use grn_core::network::DEFAULT_GENES;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// How names of files and folders begin while they are being written.
@@ -16,13 +16,35 @@ const UNFINISHED: &str = ".unfinished-";
 pub struct FileError {
     path: PathBuf,
     fault: String,
+    source: Option<io::Error>,
 }
 
 impl FileError {
     /// `fault` says what is wrong with the file and what to do.
     pub fn new(path: impl Into<PathBuf>, fault: impl fmt::Display) -> Self {
-        FileError { path: path.into(), fault: fault.to_string() }
+        FileError { path: path.into(), fault: fault.to_string(), source: None }
     }
+
+    /// The operating system refused what was to be `done`: `written`, `read`.
+    pub fn from_system(path: impl Into<PathBuf>, done: &str, source: io::Error) -> Self {
+        FileError { path: path.into(), fault: format!("cannot be {done}"), source: Some(source) }
+    }
+}
+
+/// Whether the system failed, and not what it was asked for: a full disk, a broken device, too many open files.
+pub fn is_fault_of_system(error: &io::Error) -> bool {
+    use io::ErrorKind as Kind;
+    /// EIO, ENFILE and EMFILE of every Unix, for which the standard library has no names.
+    const UNNAMED: [i32; 3] = [5, 23, 24];
+    matches!(
+        error.kind(),
+        Kind::StorageFull
+            | Kind::QuotaExceeded
+            | Kind::FileTooLarge
+            | Kind::WriteZero
+            | Kind::OutOfMemory
+            | Kind::BrokenPipe
+    ) || cfg!(unix) && error.raw_os_error().is_some_and(|code| UNNAMED.contains(&code))
 }
 
 impl fmt::Display for FileError {
@@ -31,7 +53,11 @@ impl fmt::Display for FileError {
     }
 }
 
-impl std::error::Error for FileError {}
+impl std::error::Error for FileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.source.as_ref().map(|error| error as _)
+    }
+}
 
 /// Writes a file under a temporary name in the same folder and renames it: readers see the old content or the new.
 ///
@@ -39,7 +65,7 @@ impl std::error::Error for FileError {}
 /// What the operating system says, with the path.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let attempt = || {
+    let attempt = || -> io::Result<()> {
         std::fs::create_dir_all(folder)?;
         let mut file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)?;
         file.write_all(content.as_ref())?;
@@ -48,7 +74,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
         file.persist(path).map_err(|error| error.error)?;
         Ok(())
     };
-    attempt().map_err(|error: std::io::Error| FileError::new(path, format!("cannot be written: {error}")))
+    attempt().map_err(|error| FileError::from_system(path, "written", error))
 }
 
 /// Fills a new folder under a temporary name beside its place and renames it: it is there whole or not at all.
@@ -56,7 +82,7 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
 /// # Errors
 /// What `fill` says, or the operating system.
 pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileError>) -> Result<(), FileError> {
-    let cannot = |error: std::io::Error| FileError::new(place, format!("cannot be written: {error}"));
+    let cannot = |error| FileError::from_system(place, "written", error);
     let above = place.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(above).map_err(cannot)?;
     let unfinished = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(above).map_err(cannot)?;
@@ -73,7 +99,7 @@ pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileErr
 /// # Errors
 /// What the operating system says.
 pub fn copy_files(from: &Path, to: &Path) -> Result<(), FileError> {
-    let cannot = |error: std::io::Error| FileError::new(from, format!("cannot be copied: {error}"));
+    let cannot = |error| FileError::from_system(from, "copied", error);
     for entry in std::fs::read_dir(from).map_err(cannot)? {
         let entry = entry.map_err(cannot)?;
         std::fs::copy(entry.path(), to.join(entry.file_name())).map_err(cannot)?;
@@ -86,7 +112,7 @@ pub fn copy_files(from: &Path, to: &Path) -> Result<(), FileError> {
 /// # Errors
 /// What the operating system says.
 pub fn remove_unfinished(folder: &Path) -> Result<(), FileError> {
-    let cannot = |error: std::io::Error| FileError::new(folder, format!("cannot be tidied: {error}"));
+    let cannot = |error| FileError::from_system(folder, "tidied", error);
     for entry in std::fs::read_dir(folder).map_err(cannot)? {
         let entry = entry.map_err(cannot)?;
         let is_folder = entry.file_type().map_err(cannot)?.is_dir();
@@ -102,25 +128,25 @@ pub fn remove_unfinished(folder: &Path) -> Result<(), FileError> {
 }
 
 #[cfg(unix)]
-fn set_usual_folder_permissions(folder: &Path) -> std::io::Result<()> {
+fn set_usual_folder_permissions(folder: &Path) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
 }
 
 #[cfg(not(unix))]
-fn set_usual_folder_permissions(_: &Path) -> std::io::Result<()> {
+fn set_usual_folder_permissions(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
 /// Temporary files are private; results are for everybody.
 #[cfg(unix)]
-fn set_usual_permissions(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
+fn set_usual_permissions(file: &tempfile::NamedTempFile) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))
 }
 
 #[cfg(not(unix))]
-fn set_usual_permissions(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
+fn set_usual_permissions(_: &tempfile::NamedTempFile) -> io::Result<()> {
     Ok(())
 }
 
@@ -129,7 +155,7 @@ fn set_usual_permissions(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
 /// # Errors
 /// What the operating system says, with the path.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
-    std::fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
+    std::fs::read_to_string(path).map_err(|error| FileError::from_system(path, "read", error))
 }
 
 /// The blob in a file.
@@ -137,7 +163,7 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
 /// # Errors
 /// An unreadable file, or what is wrong with the blob.
 pub fn read_blob(path: &Path) -> Result<Blob, FileError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))?;
+    let bytes = std::fs::read(path).map_err(|error| FileError::from_system(path, "read", error))?;
     Blob::decode(&bytes).map_err(|error| FileError::new(path, error))
 }
 
@@ -193,11 +219,16 @@ fn first_difference(place: &str, ours: &serde_json::Value, theirs: &serde_json::
 }
 
 /// Lines of text fields as CSV.
-pub fn csv<const N: usize>(header: [&str; N], lines: impl IntoIterator<Item = [String; N]>) -> Vec<u8> {
+pub fn csv<H, L>(header: H, lines: impl IntoIterator<Item = L>) -> Vec<u8>
+where
+    H: IntoIterator<Item: AsRef<[u8]>>,
+    L: IntoIterator<Item: AsRef<[u8]>>,
+{
     let mut csv = csv::Writer::from_writer(Vec::new());
-    for line in std::iter::once(header.map(String::from)).chain(lines) {
-        // Writing to memory cannot fail.
-        let _ = csv.write_record(&line);
+    // Writing to memory cannot fail.
+    let _ = csv.write_record(header);
+    for line in lines {
+        let _ = csv.write_record(line);
     }
     csv.into_inner().unwrap_or_default()
 }

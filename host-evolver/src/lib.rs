@@ -1,5 +1,8 @@
 //! Evolves gene-regulatory-network controllers and tells what they are worth: the host side of grn.
 
+// These panic where nobody can hear them; the command line has its own way to speak.
+#![deny(clippy::print_stdout, clippy::print_stderr, clippy::dbg_macro)]
+
 pub mod campaign;
 pub mod cli;
 #[cfg(unix)]
@@ -10,6 +13,7 @@ pub mod figures;
 pub mod files;
 pub mod model;
 pub mod quoting;
+pub mod results;
 pub mod run;
 pub mod sectors;
 pub mod simulation;

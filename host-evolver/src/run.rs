@@ -4,12 +4,12 @@
 //! resumed run leaves the same bytes as one left alone.
 
 use crate::evaluation::{Model, World};
-use crate::evolve::{FrontMember, Milestone, Search, Settings, State};
+use crate::evolve::{Search, Settings, State, deployed};
 use crate::figures;
 use crate::files::{self, FileError};
 use crate::model::deploy;
 use crate::model::describe;
-
+use crate::results;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde::{Deserialize, Serialize};
@@ -17,8 +17,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "manifest.json";
-/// The columns of a front.
-pub const FRONT_HEADER: [&str; 6] = ["nodes", "f2", "violation", "knee", "expression", "blob"];
 const CHECKPOINT: &str = "checkpoint.json";
 
 /// What a run was made from; equal manifests give equal results.
@@ -71,7 +69,14 @@ impl fmt::Display for RunError {
     }
 }
 
-impl std::error::Error for RunError {}
+impl std::error::Error for RunError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            RunError::File(error) => error.source(),
+            RunError::Figure(..) => None,
+        }
+    }
+}
 
 impl From<FileError> for RunError {
     fn from(error: FileError) -> Self {
@@ -142,28 +147,22 @@ impl RunFolder {
     /// A file that cannot be written or a picture that cannot be drawn.
     pub fn finish(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Blob, RunError> {
         let front = search.front();
-        let steepness = search.settings().steepness;
-        let blob_of = |member: &FrontMember| -> Result<Blob, FileError> {
-            let network = member.individual.tree.network(steepness);
-            let network = network.map_err(|error| FileError::new(self.path("front.csv"), error))?;
-            Ok(deploy::blob(network, &world.scenario().morphogen(), scale))
-        };
-        let mut rows = Vec::new();
         let mut knee = None;
+        let mut blobs = Vec::new();
         for (place, member) in front.iter().enumerate() {
-            let blob = blob_of(member)?;
-            let name = format!("front/{place:02}-{}-nodes.grn", member.individual.tree.size());
+            let blob = deploy::blob(member.network.clone(), &world.scenario().morphogen(), scale);
+            let name = format!("front/{place:02}-{}-nodes.grn", member.nodes);
             files::write_blob(&self.path(&name), &blob)?;
-            if member.knee.utility || knee.is_none() {
+            blobs.push(name);
+            if place == deployed(&front) {
                 knee = Some(blob);
             }
-            rows.push((member, name));
         }
-        files::write(&self.path("front.csv"), front_csv(&rows))?;
-        files::write(&self.path("history.csv"), history_csv(search.state()))?;
+        results::write_front(&self.folder, &search.settings().objectives, &front, &blobs)?;
+        results::write_history(&self.folder, &search.state().history)?;
         let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
         files::write_blob(&self.path("knee.grn"), &knee)?;
-        self.draw("pareto.svg", figures::pareto(&front, &search.state().population, &world.scenario().ring()))?;
+        self.draw("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring()))?;
         self.draw("tree.svg", grn_figures::tree(&describe::syntax_tree(&knee.network)))?;
         self.draw("grn.svg", grn_figures::grn(&describe::graph(&knee.network)))?;
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
@@ -180,29 +179,4 @@ impl RunFolder {
         let svg = figure.map_err(|error| RunError::Figure(name, error))?;
         Ok(files::write(&self.path(name), svg)?)
     }
-}
-
-fn front_csv(rows: &[(&FrontMember, String)]) -> Vec<u8> {
-    let lines = rows.iter().map(|(member, blob)| {
-        let individual = &member.individual;
-        [
-            individual.tree.size().to_string(),
-            individual.f2.to_string(),
-            individual.violation.to_string(),
-            member.knee.to_string(),
-            individual.tree.to_string(),
-            blob.clone(),
-        ]
-    });
-    files::csv(FRONT_HEADER, lines)
-}
-
-fn history_csv(state: &State) -> String {
-    let mut text = String::from("evaluations,best_f2,feasible,front,hypervolume\n");
-    for milestone in &state.history {
-        let best = milestone.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-        let Milestone { evaluations, feasible, front, hypervolume, .. } = milestone;
-        text += &format!("{evaluations},{best},{feasible},{front},{hypervolume}\n");
-    }
-    text
 }

@@ -11,7 +11,7 @@ use grn_core::blob::Blob;
 use grn_core::geometry::{Point, Vector};
 use grn_core::pattern::NoPattern;
 use grn_core::robot::{Controller, LoadError};
-use grn_core::scalar::{Q8_24, Scalar};
+use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use serde::Serialize;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -20,19 +20,6 @@ use std::ops::ControlFlow;
 pub const ENOUGH_ENCIRCLED: f64 = 0.98;
 /// Largest median radial error, as a share of the ring's radius.
 pub const ENOUGH_ACCURACY: f64 = 0.10;
-
-/// The number type robots compute with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, clap::ValueEnum)]
-pub enum Number {
-    /// Single precision.
-    #[value(name = "f32")]
-    #[serde(rename = "f32")]
-    F32,
-    /// Fixed point, for robots without a floating-point unit.
-    #[value(name = "q8.24")]
-    #[serde(rename = "q8.24")]
-    Q824,
-}
 
 /// Why there was no simulation.
 #[derive(Debug)]
@@ -115,12 +102,12 @@ pub fn simulate(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
-    number: Number,
+    number: NumberType,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        Number::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
-        Number::Q824 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
+        NumberType::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
+        NumberType::Q8_24 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
     }
 }
 

@@ -7,6 +7,7 @@ use grn_core::robot::slots;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Bytes in a line of a HEX file.
 const HEX_LINE: usize = 16;
@@ -56,6 +57,63 @@ impl SlotPaths {
     }
 }
 
+/// The number of an upload: of two slots the robot takes the one with the higher number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct UploadNumber(u32);
+
+/// A number that no upload by a programmer has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UploadNumberError;
+
+impl UploadNumber {
+    /// The highest. Uploads through the link count on from it, and must never arrive at the end of 32 bits.
+    pub const MAX: UploadNumber = UploadNumber(4_000_000_000);
+
+    /// The present time in seconds since 1970, which fits until 2096.
+    ///
+    /// # Errors
+    /// A clock that shows an earlier or later time.
+    pub fn of_clock() -> Result<Self, UploadNumberError> {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH).map_err(|_| UploadNumberError)?;
+        u32::try_from(since.as_secs()).map_err(|_| UploadNumberError)?.try_into()
+    }
+}
+
+impl TryFrom<u32> for UploadNumber {
+    type Error = UploadNumberError;
+
+    fn try_from(number: u32) -> Result<Self, UploadNumberError> {
+        Some(UploadNumber(number)).filter(|number| *number <= UploadNumber::MAX).ok_or(UploadNumberError)
+    }
+}
+
+impl FromStr for UploadNumber {
+    type Err = UploadNumberError;
+
+    fn from_str(text: &str) -> Result<Self, UploadNumberError> {
+        text.parse::<u32>().map_err(|_| UploadNumberError)?.try_into()
+    }
+}
+
+impl fmt::Display for UploadNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl fmt::Display for UploadNumberError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "upload numbers are 0 to {}, so that later uploads can have higher ones; leave out --sequence to take the \
+             seconds since 1970",
+            UploadNumber::MAX
+        )
+    }
+}
+
+impl std::error::Error for UploadNumberError {}
+
 /// How GDB reaches the programmer: a serial port, or HOST:PORT.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Programmer(String);
@@ -99,14 +157,14 @@ impl fmt::Display for ProgrammerError {
 impl std::error::Error for ProgrammerError {}
 
 impl SlotFile {
-    /// A blob, confirmed, for the slot in `sector`; of two slots the robot takes that with the higher sequence number.
+    /// A blob, confirmed, for the slot in `sector`.
     ///
     /// # Errors
     /// What is wrong with the blob.
-    pub fn new(blob: &[u8], sector: Sector, sequence: u32) -> Result<Self, slots::SlotError> {
+    pub fn new(blob: &[u8], sector: Sector, number: UploadNumber) -> Result<Self, slots::SlotError> {
         // The smallest sector has 16 KiB.
         const { assert!(slots::MIN_SLOT <= 16 * 1024) };
-        Ok(SlotFile { bytes: slots::image(blob, sequence)?.to_vec(), address: sector.start() })
+        Ok(SlotFile { bytes: slots::image(blob, number.0)?.to_vec(), address: sector.start() })
     }
 
     /// As Intel HEX with 32-bit addresses.

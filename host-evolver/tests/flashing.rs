@@ -5,8 +5,8 @@ use firmware_sim::flash::{SECTOR, SimulatedFlash};
 use grn_core::blob::Blob;
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::robot::link::Server;
-use grn_core::robot::link::message::Arithmetic;
 use grn_core::robot::slots::{self, Layout};
+use grn_core::scalar::NumberType;
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ fn robot() -> std::io::Result<String> {
     let port = format!("tcp:{}", listener.local_addr()?);
     std::thread::spawn(move || {
         let (flash, layout) = (SimulatedFlash::erased(2, 0), Layout::adjacent(SECTOR as u32));
-        let mut server = Server::<_, f32>::start(flash, layout, "robot 7", Arithmetic::F32).unwrap();
+        let mut server = Server::<_, f32>::start(flash, layout, "robot 7", NumberType::F32).unwrap();
         for mut stream in listener.incoming().flatten() {
             let mut buffer = [0; 256];
             while let Ok(count @ 1..) = stream.read(&mut buffer) {

@@ -3,16 +3,17 @@
 
 use firmware_sim::{Scenario, SwarmConfig};
 use grn_core::network::Network;
+use grn_core::scalar::NumberType;
 use host_evolver::model::deploy;
 use host_evolver::model::published::PUBLISHED;
 use host_evolver::model::tree::Tree;
-use host_evolver::simulation::{Number, Simulation, simulate};
+use host_evolver::simulation::{Simulation, simulate};
 use std::ops::ControlFlow;
 use std::thread;
 
 /// Two printed models and a typical evolved knee.
 const MODELS: [&str; 3] = ["nand-xnor", "andn-nand-xnor", "(NOR[1.9995] x1 x1)"];
-const NUMBERS: [Number; 2] = [Number::F32, Number::Q824];
+const NUMBERS: [NumberType; 2] = [NumberType::F32, NumberType::Q8_24];
 
 fn scenario(name: &str) -> Scenario {
     Scenario::load(grn_tests::golden::repository(&format!("scenarios/{name}.toml"))).unwrap()
@@ -30,7 +31,7 @@ fn bar(seed: u64) -> SwarmConfig {
 }
 
 /// One run for each configuration, two at a time.
-fn runs(model: &str, number: Number, scenario: &Scenario, configs: &[SwarmConfig]) -> Vec<Simulation> {
+fn runs(model: &str, number: NumberType, scenario: &Scenario, configs: &[SwarmConfig]) -> Vec<Simulation> {
     let run = |config: &SwarmConfig| {
         let blob = deploy::blob(network(model), &scenario.morphogen(), config.scale as f32);
         simulate(&blob, scenario, config.clone(), number, |_| ControlFlow::Continue(())).unwrap().unwrap()
@@ -63,7 +64,7 @@ fn a_moving_target_is_encircled() {
 #[test]
 fn a_crowd_stands_in_one_row() {
     let crowd = |seed| SwarmConfig { robots: 20, ..bar(seed) };
-    for run in runs("nand-xnor", Number::F32, &scenario("channel"), &[1, 2].map(crowd)) {
+    for run in runs("nand-xnor", NumberType::F32, &scenario("channel"), &[1, 2].map(crowd)) {
         let p95 = run.metrics.radial_error_p95_m.unwrap() / run.ring_radius_m;
         assert!(p95 < 0.1, "20 robots are off the pattern by {p95:.3} of its radius");
     }
@@ -71,7 +72,7 @@ fn a_crowd_stands_in_one_row() {
 
 #[test]
 fn targets_that_part_are_both_kept() {
-    for run in runs("andn-xnor", Number::Q824, &scenario("channel-two-targets"), &[3, 11].map(bar)) {
+    for run in runs("andn-xnor", NumberType::Q8_24, &scenario("channel-two-targets"), &[3, 11].map(bar)) {
         assert!(run.metrics.encircled_share.unwrap() > 0.95, "a target got away: {:?}", run.metrics);
         assert_eq!(run.metrics.wall_contacts, 0);
     }
@@ -82,7 +83,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-fn table_row(world: &str, model: &str, number: Number, runs: &[Simulation]) {
+fn table_row(world: &str, model: &str, number: NumberType, runs: &[Simulation]) {
     let all = |value: fn(&Simulation) -> f64| runs.iter().map(value).collect::<Vec<f64>>();
     let lowest = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
     let formed = || all(|run| run.metrics.formed_at_s.unwrap_or(f64::INFINITY));

@@ -8,14 +8,15 @@ use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use grn_core::robot::link::frame::{self, Frame, Receiver};
 use grn_core::robot::link::message::{
-    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, REFUSED, RESPONSE, Request, Reset, RollBack,
-    Status, VERSION, decode_message, encode_request,
+    About, Activate, Begin, Chunk, Commit, Confirm, Identify, REFUSED, RESPONSE, Request, Reset, RollBack, Status,
+    VERSION, decode_message, encode_request,
 };
 use grn_core::robot::link::refusal::{BlobFault, LoadFault};
 use grn_core::robot::link::server::TRIAL_TICKS;
 use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::slots::{MAX_BLOB, Stage};
 use grn_core::robot::{Controller, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::scalar::NumberType;
 use grn_link::flashing::{Flashed, flash};
 use grn_link::wire::LocalRobot;
 use grn_link::{Client, LinkError, Patience, Wire};
@@ -33,7 +34,7 @@ const PATIENCE: Patience =
     Patience { response: Duration::from_millis(100), erasure: Duration::from_millis(100), tries: 500 };
 
 fn server(flash: SimulatedFlash) -> TestServer {
-    Server::start(flash, LAYOUT, "test robot", Arithmetic::F32).unwrap()
+    Server::start(flash, LAYOUT, "test robot", NumberType::F32).unwrap()
 }
 
 fn client(server: TestServer) -> Client<LocalRobot<SimulatedFlash, f32>> {
@@ -79,7 +80,7 @@ fn a_blob_is_flashed_proves_itself_and_is_rolled_back() -> Outcome {
         blob_format: FORMAT_VERSION,
         genes: 32,
         blob_bytes: MAX_BLOB as u16,
-        arithmetic: Arithmetic::F32,
+        number_type: NumberType::F32,
         name: "test robot".try_into().map_err(|_| "too long")?,
     };
     assert_eq!(about, expected);

@@ -43,10 +43,10 @@ impl<W: Wire + ?Sized> Wire for &mut W {
     }
 }
 
-/// What came of reading with a time limit; a signal ends the waiting early.
+/// The result of a read with a time limit as [`Wire::receive`] gives it: no bytes if the limit passed or a signal came.
 ///
 /// # Errors
-/// All but the limit's own; an end of the stream becomes [`io::ErrorKind::UnexpectedEof`].
+/// All others; an end of the stream becomes [`io::ErrorKind::UnexpectedEof`].
 pub fn read_within(read: io::Result<usize>) -> io::Result<usize> {
     match read {
         Ok(0) => Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the other side has gone")),
@@ -81,7 +81,7 @@ impl Wire for std::os::unix::net::UnixStream {
     }
 }
 
-/// A robot in this process: what is sent is served at once.
+/// A robot in this process; it answers what is sent before `send` returns.
 pub struct LocalRobot<F, S> {
     server: Server<F, S>,
     answers: VecDeque<u8>,

@@ -23,6 +23,8 @@
 mod tests;
 
 use core::f64::consts::{FRAC_PI_2, PI};
+use core::fmt;
+use core::str::FromStr;
 
 /// Below this many radians above π an angle is straight.
 const STRAIGHT: f64 = 1e-9;
@@ -37,6 +39,56 @@ pub enum Neighbours {
     /// The two nearest on either side: of the four combinations of one left and one right, the largest angle.
     /// Less easily misled by a point that happens to lie close.
     Two,
+}
+
+/// By which of the two measures a point is the knee of its front.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Knee {
+    /// The largest angle.
+    pub angle: bool,
+    /// The largest marginal utility.
+    pub utility: bool,
+}
+
+impl fmt::Display for Knee {
+    /// `angle`, `utility`, `angle+utility`, or nothing for a point that is no knee.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match (self.angle, self.utility) {
+            (true, true) => "angle+utility",
+            (true, false) => "angle",
+            (false, true) => "utility",
+            (false, false) => "",
+        })
+    }
+}
+
+/// A text that names no [`Knee`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ParseKneeError(String);
+
+impl fmt::Display for ParseKneeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "knee {:?}: angle, utility, angle+utility or nothing is needed", self.0)
+    }
+}
+
+impl core::error::Error for ParseKneeError {}
+
+impl FromStr for Knee {
+    type Err = ParseKneeError;
+
+    fn from_str(text: &str) -> Result<Knee, ParseKneeError> {
+        let all = [(false, false), (true, false), (false, true), (true, true)];
+        let mut knees = all.into_iter().map(|(angle, utility)| Knee { angle, utility });
+        knees.find(|knee| knee.to_string() == text).ok_or_else(|| ParseKneeError(text.into()))
+    }
+}
+
+/// Whether each point is the knee of the front, by the angle to its nearest neighbours and by marginal utility.
+#[must_use]
+pub fn knees(points: &[[f64; 2]]) -> Vec<Knee> {
+    let (angle, utility) = (knee_by_angle(points, Neighbours::Nearest), knee_by_utility(points));
+    (0..points.len()).map(|place| Knee { angle: angle == Some(place), utility: utility == Some(place) }).collect()
 }
 
 /// The distinct points of a front, scaled, by increasing first and so decreasing second objective.

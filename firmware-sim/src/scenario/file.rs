@@ -1,18 +1,20 @@
 //! The TOML file as it stands, and the checks that make it a [`Scenario`].
 
-use super::{MAX_SNAPSHOTS, Morphogen, Path, Ring, Scenario, ScenarioError};
+use super::limits::{self, MAX_POINTS, WALL_OVERHANG};
+use super::{Morphogen, Path, Ring, Scenario};
 use crate::geometry::{Polygon, PolygonError, Walls};
 use core::fmt::Write;
 use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::percept::MAX_TARGETS;
+use grn_input::{InputError, Pair, Range};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ScenarioFile {
     name: String,
-    region: [f64; 2],
+    region: Pair,
     snapshots: i64,
     morphogen: MorphogenTable,
     ring: RingTable,
@@ -50,139 +52,160 @@ struct RingTable {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TargetTable {
-    path: Vec<[f64; 2]>,
+    path: Vec<Pair>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct WallTable {
-    polygon: Vec<[f64; 2]>,
+    polygon: Vec<Pair>,
 }
 
-/// `right` must hold for a finite `value`.
-fn check(place: &str, value: f64, right: bool, expected: &str) -> Result<(), ScenarioError> {
-    if value.is_finite() && right { Ok(()) } else { Err(ScenarioError::new(place, value, expected)) }
-}
-
-fn point([x, y]: [f64; 2]) -> Point<f64> {
-    Vector::new(x, y)
+/// A point that must lie in the region, or at most `overhang` metres beside it.
+fn checked_point(key: &str, Pair([x, y]): Pair, region: [f64; 2], overhang: f64) -> Result<Point<f64>, InputError> {
+    let holds = |value: f64, side: f64| Range::new(-overhang, side + overhang, "").holds(value);
+    if holds(x, region[0]) && holds(y, region[1]) {
+        return Ok(Vector::new(x, y));
+    }
+    let [east, north] = region;
+    let expected = if overhang > 0.0 {
+        format!(
+            "must be finite and at most {overhang} metres outside the region, {east:?} x {north:?} metres from [0, 0]"
+        )
+    } else {
+        format!("must lie in the region, {east:?} x {north:?} metres from [0, 0]; move it, or make the region larger")
+    };
+    Err(InputError::new(key, format!("[{x:?}, {y:?}]"), expected))
 }
 
 impl TryFrom<ScenarioFile> for Scenario {
-    type Error = ScenarioError;
+    type Error = InputError;
 
-    fn try_from(file: ScenarioFile) -> Result<Scenario, ScenarioError> {
-        let ScenarioFile { name, region, snapshots, morphogen, ring, targets, walls } = file;
-        for (index, side) in region.into_iter().enumerate() {
-            check(&format!("region[{index}]"), side, side > 0.0, "must be a positive length in metres")?;
-        }
-        let snapshots =
-            usize::try_from(snapshots).ok().filter(|count| (1..=MAX_SNAPSHOTS).contains(count)).ok_or_else(|| {
-                ScenarioError::new("snapshots", snapshots, format!("must be a whole number in 1..={MAX_SNAPSHOTS}"))
-            })?;
-        let walls = checked_walls(walls)?;
-        Ok(Scenario {
-            name,
-            region,
-            snapshots,
-            morphogen: checked_morphogen(morphogen)?,
-            ring: checked_ring(ring)?,
-            targets: checked_targets(targets, &walls)?,
-            walls,
-        })
+    fn try_from(file: ScenarioFile) -> Result<Scenario, InputError> {
+        let ScenarioFile { name, region: Pair(region), snapshots, morphogen, ring, targets, walls } = file;
+        limits::check_name(&name)?;
+        let snapshots = limits::check_region(region, snapshots)?;
+        let MorphogenTable { kernel, target_width, obstacle_width, level } = morphogen;
+        let kernel = match kernel {
+            KernelName::Gaussian => Kernel::Gaussian,
+            KernelName::Exponential => Kernel::Exponential,
+        };
+        let morphogen = Morphogen { kernel, target_width, obstacle_width, level };
+        limits::check_morphogen(&morphogen)?;
+        let RingTable { d_min, d_max, d_obstacle, steepness } = ring;
+        let ring = Ring { d_min, d_max, d_obstacle, steepness };
+        limits::check_ring(&ring, region)?;
+        let walls = checked_walls(walls, region, snapshots)?;
+        let targets = checked_targets(targets, region, &walls)?;
+        Ok(Scenario { name, region, snapshots, morphogen, ring, targets, walls })
     }
 }
 
-fn checked_morphogen(table: MorphogenTable) -> Result<Morphogen, ScenarioError> {
-    let MorphogenTable { kernel, target_width, obstacle_width, level } = table;
-    check("morphogen.target_width", target_width, target_width > 0.0, "must be a positive length in metres")?;
-    check("morphogen.obstacle_width", obstacle_width, obstacle_width > 0.0, "must be a positive length in metres")?;
-    check("morphogen.level", level, level > 0.0 && level < 1.0, "must lie between 0 and 1, both excluded")?;
-    let kernel = match kernel {
-        KernelName::Gaussian => Kernel::Gaussian,
-        KernelName::Exponential => Kernel::Exponential,
-    };
-    Ok(Morphogen { kernel, target_width, obstacle_width, level })
+fn too_many(key: &str, count: usize) -> InputError {
+    InputError::new(key, format!("{count} points"), format!("at most {MAX_POINTS} points are allowed; simplify it"))
 }
 
-fn checked_ring(table: RingTable) -> Result<Ring, ScenarioError> {
-    let RingTable { d_min, d_max, d_obstacle, steepness } = table;
-    check("ring.d_min", d_min, d_min >= 0.0, "must be at least 0 metres")?;
-    check("ring.d_max", d_max, d_max > d_min, &format!("must be above d_min = {d_min} and finite"))?;
-    check("ring.d_obstacle", d_obstacle, d_obstacle >= 0.0, "must be at least 0 metres")?;
-    check("ring.steepness", steepness, steepness > 0.0, "must be positive, per metre")?;
-    Ok(Ring { d_min, d_max, d_obstacle, steepness })
-}
-
-fn checked_walls(tables: Vec<WallTable>) -> Result<Walls, ScenarioError> {
+fn checked_walls(tables: Vec<WallTable>, region: [f64; 2], snapshots: usize) -> Result<Walls, InputError> {
     let mut polygons = Vec::with_capacity(tables.len());
-    for (index, table) in tables.into_iter().enumerate() {
-        let vertices = table.polygon;
-        let polygon = Polygon::new(vertices.iter().copied().map(point).collect()).map_err(|error| {
-            let place = format!("wall[{index}].polygon");
-            let at = |vertex: usize| format!("{:?}", vertices.get(vertex).copied().unwrap_or_default());
-            match error {
-                PolygonError::TooFewVertices(count) => {
-                    ScenarioError::new(place, format!("{count} points"), "a polygon needs at least 3 points")
-                }
-                PolygonError::NotFinite(vertex) => {
-                    ScenarioError::new(format!("{place}[{vertex}]"), at(vertex), "coordinates must be finite")
-                }
-                PolygonError::RepeatedVertex(vertex) => ScenarioError::new(
-                    format!("{place}[{vertex}]"),
-                    at(vertex),
-                    "must differ from the next point (the last point is joined to the first by itself)",
-                ),
-                PolygonError::SelfIntersecting(a, b) => ScenarioError::new(
-                    place,
-                    format!("edges from point {a} {} and point {b} {} meet", at(a), at(b)),
-                    "the outline must not cross or touch itself",
-                ),
-                PolygonError::NoArea => ScenarioError::new(place, "encloses no area", "points must not lie on a line"),
-            }
-        })?;
+    let (mut outlines, mut points) = (0.0, 0);
+    for (index, WallTable { polygon: vertices }) in tables.into_iter().enumerate() {
+        let key = format!("wall[{index}].polygon");
+        if vertices.len() > MAX_POINTS {
+            return Err(too_many(&key, vertices.len()));
+        }
+        let point = |(vertex, raw)| checked_point(&format!("{key}[{vertex}]"), raw, region, WALL_OVERHANG);
+        let polygon = vertices.iter().copied().enumerate().map(point).collect::<Result<_, _>>()?;
+        let polygon = Polygon::new(polygon).map_err(|error| polygon_error(&key, &vertices, error))?;
+        outlines += polygon.perimeter();
+        points += vertices.len();
+        limits::check_outline(&key, outlines, points, snapshots)?;
         polygons.push(polygon);
     }
     Ok(Walls::new(polygons))
 }
 
-fn checked_targets(tables: Vec<TargetTable>, walls: &Walls) -> Result<Vec<Path>, ScenarioError> {
+fn polygon_error(key: &str, vertices: &[Pair], error: PolygonError) -> InputError {
+    let at = |vertex: usize| vertices.get(vertex).map(|pair| format!("{:?}", pair.0)).unwrap_or_default();
+    let next = |vertex: usize| (vertex + 1) % vertices.len().max(1);
+    match error {
+        PolygonError::TooFewVertices(count) => {
+            InputError::new(key, format!("{count} points"), "a polygon needs at least 3 points")
+        }
+        PolygonError::NotFinite(vertex) => {
+            InputError::new(format!("{key}[{vertex}]"), at(vertex), "coordinates must be finite")
+        }
+        PolygonError::RepeatedVertex(vertex) => InputError::new(
+            format!("{key}[{vertex}]"),
+            at(vertex),
+            "must differ from the next point (the last point is joined to the first by itself)",
+        ),
+        PolygonError::SelfIntersecting(a, b) => InputError::new(
+            format!("{key}[{b}]"),
+            at(b),
+            format!(
+                "the edge from here to {} meets the one from {} to {}; the outline must not cross or touch itself",
+                at(next(b)),
+                at(a),
+                at(next(a))
+            ),
+        ),
+        PolygonError::NoArea => InputError::new(key, "", "encloses no area; points must not lie on a line"),
+    }
+}
+
+fn checked_targets(tables: Vec<TargetTable>, region: [f64; 2], walls: &Walls) -> Result<Vec<Path>, InputError> {
     if !(1..=MAX_TARGETS).contains(&tables.len()) {
         let expected = format!("a scenario has 1 to {MAX_TARGETS} [[target]] tables");
-        return Err(ScenarioError::new("target", format!("{} of them", tables.len()), expected));
+        return Err(InputError::new("target", format!("{} of them", tables.len()), expected));
     }
-    let mut paths = Vec::with_capacity(tables.len());
-    for (target, table) in tables.into_iter().enumerate() {
-        if table.path.is_empty() {
-            return Err(ScenarioError::new(format!("target[{target}].path"), "[]", "a path needs at least 1 point"));
+    let mut paths: Vec<Path> = Vec::with_capacity(tables.len());
+    for (target, TargetTable { path }) in tables.into_iter().enumerate() {
+        let key = format!("target[{target}].path");
+        if path.is_empty() {
+            return Err(InputError::new(key, "[]", "a path needs at least 1 point"));
         }
-        let mut points: Vec<Point<f64>> = Vec::with_capacity(table.path.len());
-        for (index, raw) in table.path.into_iter().enumerate() {
-            let fault =
-                |expected| ScenarioError::new(format!("target[{target}].path[{index}]"), format!("{raw:?}"), expected);
-            let here = point(raw);
-            if !(here.x.is_finite() && here.y.is_finite()) {
-                return Err(fault("coordinates must be finite".to_owned()));
-            }
+        if path.len() > MAX_POINTS {
+            return Err(too_many(&key, path.len()));
+        }
+        let mut points: Vec<Point<f64>> = Vec::with_capacity(path.len());
+        for (index, raw) in path.into_iter().enumerate() {
+            let key = format!("{key}[{index}]");
+            let here = checked_point(&key, raw, region, 0.0)?;
+            let fault = |expected: String| InputError::new(&key, format!("{:?}", raw.0), expected);
             if let Some(wall) = walls.containing(here) {
-                return Err(fault(format!("must lie outside the walls, but is inside wall[{wall}]")));
+                return Err(fault(format!("is inside wall[{wall}] (counted from 0); move the target or the wall")));
             }
-            if let Some(&before) = points.last()
-                && let Some(direction) = (here - before).direction()
-                && walls.ray(before, direction, (here - before).length()).is_some()
-            {
-                return Err(fault("the straight way from the point before it meets a wall".to_owned()));
+            if let Some(wall) = points.last().and_then(|&before| wall_between(walls, before, here)) {
+                let words = "the straight way from the point before it meets wall";
+                return Err(fault(format!("{words}[{wall}] (counted from 0); lead the path around it")));
             }
             points.push(here);
         }
-        paths.push(Path::new(points));
+        let path = Path::new(points);
+        if let Some(other) = paths.iter().position(|other| *other == path) {
+            let expected = format!("the same path as target[{other}]: two targets in one place; move or remove one");
+            return Err(InputError::new(key, "", expected));
+        }
+        paths.push(path);
     }
     Ok(paths)
 }
 
+/// The wall that the straight way between two points meets first.
+fn wall_between(walls: &Walls, start: Point<f64>, end: Point<f64>) -> Option<usize> {
+    let (direction, reach) = ((end - start).direction()?, (end - start).length());
+    walls.ray(start, direction, reach)?;
+    let first = |polygon: &Polygon| {
+        let hits = polygon.edges().iter().filter_map(|edge| edge.ray(start, direction));
+        hits.filter(|&distance| distance <= reach).reduce(f64::min)
+    };
+    let hits = walls.polygons().iter().enumerate().filter_map(|(wall, polygon)| Some((wall, first(polygon)?)));
+    hits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(wall, _)| wall)
+}
+
 impl From<Scenario> for ScenarioFile {
     fn from(scenario: Scenario) -> ScenarioFile {
-        let raw = |points: &[Point<f64>]| points.iter().map(|p| [p.x, p.y]).collect();
+        let raw = |points: &[Point<f64>]| points.iter().map(|p| Pair([p.x, p.y])).collect();
         let Morphogen { kernel, target_width, obstacle_width, level } = scenario.morphogen;
         let Ring { d_min, d_max, d_obstacle, steepness } = scenario.ring;
         let kernel = match kernel {
@@ -191,7 +214,7 @@ impl From<Scenario> for ScenarioFile {
         };
         ScenarioFile {
             name: scenario.name,
-            region: scenario.region,
+            region: Pair(scenario.region),
             snapshots: i64::try_from(scenario.snapshots).unwrap_or(i64::MAX),
             morphogen: MorphogenTable { kernel, target_width, obstacle_width, level },
             ring: RingTable { d_min, d_max, d_obstacle, steepness },
@@ -219,14 +242,17 @@ impl ScenarioFile {
              [morphogen]\nkernel = \"{}\"\ntarget_width = {target_width:?}\nobstacle_width = {obstacle_width:?}\n\
              level = {level:?}\n\n\
              [ring]\nd_min = {d_min:?}\nd_max = {d_max:?}\nd_obstacle = {d_obstacle:?}\nsteepness = {steepness:?}\n",
-            self.region,
+            self.region.0,
             self.snapshots,
             kernel.name(),
         );
+        let raw = |points: &[Pair]| points.iter().map(|pair| pair.0).collect::<Vec<_>>();
         for TargetTable { path } in &self.targets {
+            let path = raw(path);
             let _ = write!(text, "\n[[target]]\npath = {path:?}\n");
         }
         for WallTable { polygon } in &self.walls {
+            let polygon = raw(polygon);
             let _ = write!(text, "\n[[wall]]\npolygon = {polygon:?}\n");
         }
         text

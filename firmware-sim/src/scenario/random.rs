@@ -1,16 +1,29 @@
 //! Worlds of round obstacles thrown at random, with the way of every target kept free.
 
-use super::{Path, Scenario, ScenarioError};
+use super::file::ScenarioFile;
+use super::{Path, Scenario};
 use crate::geometry::{Polygon, Walls, nearest_on_segment};
 use crate::random::{Component, Stream};
 use core::f64::consts::TAU;
 use grn_core::geometry::{Point, Vector};
+use grn_input::{InputError, Range};
 use serde::{Deserialize, Serialize};
 
 /// Corners of the polygon that stands for a round obstacle; it lies within the circle by less than 0.5 % of the radius.
 const CORNERS: usize = 32;
 /// Obstacles thrown for each one that finds no room before the world counts as full.
 const THROWS: usize = 20_000;
+/// Comparisons of obstacles with each other and with points of paths before the world counts as full: about a second.
+const MOST_COMPARISONS: usize = 300_000_000;
+/// The most obstacles, so that their corners stay within the points that walls may have, with room for chance.
+const MOST_OBSTACLES: f64 = 600.0;
+
+/// Share of the region that obstacles may cover; equal discs thrown at random jam at 0.547.
+pub const DENSITY: Range<f64> = Range::new(0.001, 0.5, "(a share of the region)");
+/// Radii of obstacles.
+pub const RADIUS: Range<f64> = Range::new(0.01, 100.0, "metres");
+/// What may be kept free around paths.
+pub const CLEARANCE: Range<f64> = Range::new(0.01, 100.0, "metres");
 
 /// How to throw obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,33 +31,41 @@ const THROWS: usize = 20_000;
 pub struct RandomObstacles {
     /// Which world of those with the same other numbers.
     pub seed: u64,
-    /// Share of the region that obstacles cover, within (0, 0.5]; the last one thrown may exceed it.
+    /// Share of the region that obstacles cover, in [`DENSITY`]; the last one thrown may exceed it.
     pub density: f64,
-    /// Least and greatest radius, metres, positive; radii are uniform between.
+    /// Least and greatest radius, metres, in [`RADIUS`]; radii are uniform between.
     pub radius: [f64; 2],
-    /// No obstacle is nearer than this to a target's path, metres, positive.
+    /// No obstacle is nearer than this to a target's path, metres, in [`CLEARANCE`].
     pub clearance: f64,
 }
 
 impl RandomObstacles {
-    fn check(&self) -> Result<(), ScenarioError> {
+    /// Checks the numbers for a world of this region, metres; keys begin with `prefix`.
+    ///
+    /// # Errors
+    /// A number out of range, or obstacles so small that too many are needed.
+    pub fn check(&self, prefix: &str, region: [f64; 2]) -> Result<(), InputError> {
         let [least, greatest] = self.radius;
-        let fault = |place: &str, value: f64, expected: &str| Err(ScenarioError::new(place, value, expected));
-        match () {
-            () if !(self.density > 0.0 && self.density <= 0.5) => {
-                fault("density", self.density, "a share above 0 and at most 0.5 is needed")
-            }
-            () if !(least > 0.0 && least.is_finite()) => {
-                fault("radius[0]", least, "must be a positive length in metres")
-            }
-            () if !(greatest >= least && greatest.is_finite()) => {
-                fault("radius[1]", greatest, "must be at least radius[0] and finite")
-            }
-            () if !(self.clearance > 0.0 && self.clearance.is_finite()) => {
-                fault("clearance", self.clearance, "must be a positive length in metres")
-            }
-            () => Ok(()),
+        let key = |name: &str| format!("{prefix}{name}");
+        DENSITY.check(&key("density"), self.density)?;
+        RADIUS.check(&key("radius[0]"), least)?;
+        RADIUS.check(&key("radius[1]"), greatest)?;
+        CLEARANCE.check(&key("clearance"), self.clearance)?;
+        if greatest < least {
+            let expected = format!("the greatest radius must be at least the least, {least:?}");
+            return Err(InputError::new(key("radius[1]"), format!("{greatest:?}"), expected));
         }
+        // Radii are uniform between the two.
+        let mean_square = (least * least + least * greatest + greatest * greatest) / 3.0;
+        let count = self.density * region[0] * region[1] / (TAU / 2.0 * mean_square);
+        if count > MOST_OBSTACLES {
+            let expected = format!(
+                "about {count:.0} obstacles of this size are needed, and at most {MOST_OBSTACLES} are thrown; make them \
+                 larger, or the density less"
+            );
+            return Err(InputError::new(key("radius[0]"), format!("{least:?}"), expected));
+        }
+        Ok(())
     }
 }
 
@@ -80,14 +101,16 @@ impl Scenario {
     ///
     /// # Errors
     /// Numbers out of the ranges of [`RandomObstacles`], or a density for which there is no room.
-    pub fn with_random_obstacles(&self, obstacles: &RandomObstacles) -> Result<Scenario, ScenarioError> {
-        obstacles.check()?;
+    pub fn with_random_obstacles(&self, obstacles: &RandomObstacles) -> Result<Scenario, InputError> {
+        obstacles.check("", self.region)?;
         let mut stream = Stream::new(obstacles.seed, Component::Obstacles, 0);
         let [width, height] = self.region;
         let [least, greatest] = obstacles.radius;
         let wanted = obstacles.density * width * height;
-        let (mut discs, mut covered, mut missed) = (Vec::<Disc>::new(), 0.0, 0);
+        let points: usize = self.targets.iter().map(|path| path.points().len()).sum();
+        let (mut discs, mut covered, mut missed, mut comparisons) = (Vec::<Disc>::new(), 0.0, 0, 0);
         while covered < wanted {
+            comparisons += points + discs.len();
             let radius = least + (greatest - least) * stream.unit();
             let disc = Disc { centre: Vector::new(width * stream.unit(), height * stream.unit()), radius };
             let is_clear = self.targets.iter().all(|path| disc.is_clear_of(path, obstacles.clearance));
@@ -98,19 +121,20 @@ impl Scenario {
                 continue;
             }
             missed += 1;
-            if missed == THROWS {
+            if missed == THROWS || comparisons > MOST_COMPARISONS {
                 let reached =
                     format!("no room beyond {:.3}; less density or clearance is needed", covered / (width * height));
-                return Err(ScenarioError::new("density", obstacles.density, reached));
+                return Err(InputError::new("density", obstacles.density, reached));
             }
         }
         let polygon = |(place, disc): (usize, &Disc)| {
             Polygon::new(disc.outline())
-                .map_err(|_| ScenarioError::new(format!("obstacle {place}"), disc.radius, "too small"))
+                .map_err(|_| InputError::new(format!("obstacle {place}"), disc.radius, "too small"))
         };
         let walls = discs.iter().enumerate().map(polygon).collect::<Result<_, _>>()?;
         let name = format!("{}-{}", self.name, obstacles.seed);
-        Ok(Scenario { name, walls: Walls::new(walls), ..self.clone() })
+        let world = Scenario { name, walls: Walls::new(walls), ..self.clone() };
+        Scenario::try_from(ScenarioFile::from(world))
     }
 }
 
@@ -153,6 +177,9 @@ mod tests {
             (RandomObstacles { density: 0.5, clearance: 9.0, ..SOME }, "no room"),
             (RandomObstacles { radius: [0.9, 0.3], ..SOME }, "radius[1]"),
             (RandomObstacles { clearance: -1.0, ..SOME }, "clearance"),
+            (RandomObstacles { radius: [0.01, 0.01], ..SOME }, "radius[0] = 0.01: about 99472 obstacles"),
+            (RandomObstacles { radius: [1e-6, 1e-6], ..SOME }, "radius[0] = 1e-6: must be"),
+            (RandomObstacles { radius: [0.3, f64::INFINITY], ..SOME }, "radius[1] = inf: must be"),
         ] {
             let error = open().with_random_obstacles(&obstacles).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");

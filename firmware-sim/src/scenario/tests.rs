@@ -10,9 +10,9 @@ fn channel() -> Scenario {
 }
 
 /// The error of the channel scenario with `from` replaced by `to`.
-fn fault(from: &str, to: &str) -> ScenarioError {
+fn fault(from: &str, to: &str) -> InputError {
     assert!(CHANNEL.contains(from), "{from}");
-    Scenario::parse(&CHANNEL.replace(from, to)).unwrap_err()
+    Scenario::parse(&CHANNEL.replace(from, to)).map(|_| ()).unwrap_err()
 }
 
 #[test]
@@ -34,48 +34,115 @@ fn the_repository_s_scenarios_load_and_round_trip() {
 #[test]
 fn every_error_names_place_value_and_remedy() {
     let cases = [
-        ("region = [20.0, 20.0]", "region = [20.0, -3.0]", "region[1]", "-3", "positive"),
-        ("region = [20.0, 20.0]", "region = [inf, 20.0]", "region[0]", "inf", "positive"),
-        ("snapshots = 15", "snapshots = 0", "snapshots", "0", "1..=10000"),
-        ("snapshots = 15", "snapshots = 10001", "snapshots", "10001", "1..=10000"),
-        ("target_width = 1.5", "target_width = 0", "morphogen.target_width", "0", "positive"),
-        ("obstacle_width = 0.9", "obstacle_width = nan", "morphogen.obstacle_width", "NaN", "positive"),
-        ("level = 0.5", "level = 1", "morphogen.level", "1", "between 0 and 1"),
-        ("d_min = 1.0", "d_min = -1.0", "ring.d_min", "-1", "at least 0"),
-        ("d_max = 2.0", "d_max = 1.0", "ring.d_max", "1", "above d_min = 1"),
-        ("d_obstacle = 2.0", "d_obstacle = -2.0", "ring.d_obstacle", "-2", "at least 0"),
-        ("steepness = 10.0", "steepness = 0.0", "ring.steepness", "0", "positive"),
-        ("path = [[3.0000, 10.0000], [17.0000, 10.0000]]", "path = []", "target[0].path", "[]", "at least 1 point"),
-        ("[17.0000, 10.0000]", "[10.0, 15.0]", "target[0].path[1]", "[10.0, 15.0]", "inside wall[0]"),
-        ("[3.0000, 10.0000]", "[10.0, 1.0]", "target[0].path[0]", "[10.0, 1.0]", "inside wall[1]"),
-        ("[17.0000, 10.0000]", "[17.0, 16.0]", "target[0].path[1]", "[17.0, 16.0]", "meets a wall"),
-        ("[17.0000, 10.0000]", "[inf, 16.0]", "target[0].path[1]", "[inf, 16.0]", "finite"),
-        (", [14.0000, 20.0000], [6.0000, 20.0000]", "", "wall[0].polygon", "2 points", "at least 3"),
-        ("[14.0000, 6.0000], [6.0000, 6.0000]", "[6.0, 6.0], [14.0, 6.0]", "wall[1].polygon", "edges", "cross"),
-        ("[14.0000, 6.0000], [6.0000, 6.0000]", "[9.0, 0.0]", "wall[1].polygon", "no area", "on a line"),
-        ("[14.0000, 20.0000]", "[nan, 20.0]", "wall[0].polygon[2]", "[NaN, 20.0]", "finite"),
-        ("[14.0000, 20.0000]", "[14.0, 14.0]", "wall[0].polygon[1]", "[14.0, 14.0]", "differ"),
-        ("snapshots = 15", "snapshot = 15", "line 4", "snapshot = 15", "unknown field `snapshot`"),
-        ("level = 0.5", "level = 0.5\nnoise = 2", "line 11", "noise = 2", "unknown field `noise`"),
-        ("kernel = \"gaussian\"", "kernel = \"box\"", "line 7", "kernel = \"box\"", "`gaussian`"),
-        ("d_max = 2.0", "d_max = ", "line 14", "d_max =", ""),
-        ("steepness = 10.0", "", "", "", "missing field `steepness`"),
+        ("region = [20.0, 20.0]", "region = [20.0, -3.0]", "3:17: region[1] = -3.0: must be a number from 0.5 to 3000"),
+        ("region = [20.0, 20.0]", "region = [inf, 20.0]", "3:11: region[0] = inf: must be"),
+        ("region = [20.0, 20.0]", "region = [1e20, 20.0]", "3:11: region[0] = 1e20: must be"),
+        ("region = [20.0, 20.0]", "region = [2e3, 2e3]", "3:10: region = [2e3, 2e3]: 1.0e8 lattice nodes"),
+        ("region = [20.0, 20.0]", "region = [20.0, 20.0, 1]", "3:10: region = [20.0, 20.0, 1]: invalid length 3"),
+        ("snapshots = 15", "snapshots = 0", "4:13: snapshots = 0: must be a number from 1 to 10000"),
+        ("snapshots = 15", "snapshots = 10001", "4:13: snapshots = 10001: must be"),
+        ("snapshots = 15", "snapshots = 5000", "4:13: snapshots = 5000: too many for a region of [20.0, 20.0] metres"),
+        ("snapshots = 15", "snapshots = 99999999999999999999", "4:13: snapshots = 99999999999999999999: invalid type"),
+        ("snapshots = 15", "snapshots = 1.5", "4:13: snapshots = 1.5: invalid type"),
+        (
+            "target_width = 1.5",
+            "target_width = 0",
+            "8:16: morphogen.target_width = 0: must be a number from 0.01 to 100",
+        ),
+        ("target_width = 1.5", "target_width = 150", "8:16: morphogen.target_width = 150: must be"),
+        ("obstacle_width = 0.9", "obstacle_width = nan", "9:18: morphogen.obstacle_width = nan: must be"),
+        ("level = 0.5", "level = 0.995", "10:9: morphogen.level = 0.995: must be a number from 0.01 to 0.99"),
+        ("d_min = 1.0", "d_min = -1.0", "13:9: ring.d_min = -1.0: must be a number from 0 to 100"),
+        ("d_max = 2.0", "d_max = 1.0", "14:9: ring.d_max = 1.0: must be above d_min = 1.0"),
+        ("d_max = 2.0", "d_max = 30.0", "14:9: ring.d_max = 30.0: a ring of this radius does not fit"),
+        ("d_obstacle = 2.0", "d_obstacle = 1e9", "15:14: ring.d_obstacle = 1e9: must be a number from 0 to 100 metres"),
+        ("steepness = 10.0", "steepness = 0.001", "16:13: ring.steepness = 0.001: must be a number from 0.5 to 1000"),
+        ("steepness = 10.0", "steepness = 5e-324", "16:13: ring.steepness = 5e-324: must be"),
+        ("[[3.0000, 10.0000], [17.0000, 10.0000]]", "[]", "19:8: target[0].path = []: a path needs at least 1 point"),
+        ("[17.0000, 10.0000]", "[10.0, 15.0]", "19:28: target[0].path[1] = [10.0, 15.0]: is inside wall[0]"),
+        ("[3.0000, 10.0000]", "[10.0, 1.0]", "19:9: target[0].path[0] = [10.0, 1.0]: is inside wall[1]"),
+        (
+            "[17.0000, 10.0000]",
+            "[17.0, 16.0]",
+            "19:28: target[0].path[1] = [17.0, 16.0]: the straight way from the point before it meets wall[0]",
+        ),
+        ("[17.0000, 10.0000]", "[inf, 16.0]", "19:28: target[0].path[1] = [inf, 16.0]: must lie in the region"),
+        (
+            "[17.0000, 10.0000]",
+            "[27.0, 10.0]",
+            "19:28: target[0].path[1] = [27.0, 10.0]: must lie in the region, 20.0 x 20.0 metres",
+        ),
+        ("[[3.0000, 10.0000],", "[[-0.1, 10.0],", "19:9: target[0].path[0] = [-0.1, 10.0]: must lie in the region"),
+        (
+            ", [14.0000, 20.0000], [6.0000, 20.0000]",
+            "",
+            "22:11: wall[0].polygon = 2 points: a polygon needs at least 3",
+        ),
+        (
+            "[14.0000, 6.0000], [6.0000, 6.0000]",
+            "[6.0, 6.0], [14.0, 6.0]",
+            "wall[1].polygon[3] = [14.0, 6.0]: the edge from here to [6.0, 0.0] meets the one from [14.0, 0.0] to [6.0, 6.0]",
+        ),
+        ("[14.0000, 6.0000], [6.0000, 6.0000]", "[9.0, 0.0]", "25:11: wall[1].polygon: encloses no area"),
+        ("[14.0000, 20.0000]", "[nan, 20.0]", "wall[0].polygon[2] = [nan, 20.0]: must be finite"),
+        ("[14.0000, 20.0000]", "[1e9, 20.0]", "wall[0].polygon[2] = [1e9, 20.0]: must be finite and at most 100"),
+        ("[14.0000, 20.0000]", "[14.0, 14.0]", "wall[0].polygon[1] = [14.0000, 14.0000]: must differ"),
+        ("name = \"channel\"", "name = \"..\"", "2:8: name = \"..\": a name with letters or digits"),
+        ("name = \"channel\"", "name = \"a\\u0000\"", "2:8: name = \"a\\u0000\": a name is one line"),
+        ("name = \"channel\"", "name = 3", "2:8: name = 3: invalid type"),
+        ("snapshots = 15", "snapshot = 15", "4:1: snapshot: unknown key; did you mean snapshots?"),
+        ("level = 0.5", "level = 0.5\nnoise = 2", "11:1: morphogen.noise: unknown key (known here: kernel"),
+        ("kernel = \"gaussian\"", "kernel = \"box\"", "7:10: morphogen.kernel = \"box\": unknown variant"),
+        ("d_max = 2.0", "d_max = ", "14:9: d_max =: a value is missing"),
+        ("steepness = 10.0", "", "12:1: ring.steepness: is missing; add it"),
+        ("region = [20.0, 20.0]", "region = [20.0, 20.0", "3:10: the list that begins here is not closed"),
     ];
-    for (from, to, place, value, remedy) in cases {
-        let error = fault(from, to);
-        let shown = error.to_string();
-        assert!(place.is_empty() || error.place == place, "{to}: {shown}");
-        assert!(error.value.contains(value) && error.expected.contains(remedy), "{to}: {shown}");
-        assert!(shown.contains(place) && shown.contains(value) && shown.contains(remedy), "{shown}");
+    for (from, to, beginning) in cases {
+        let shown = fault(from, to).to_string();
+        assert!(shown.contains(beginning), "{to}:\n{shown}\n{beginning}");
     }
+    let long = fault("channel", &"x".repeat(1001)).to_string();
+    assert!(long.contains("2:8: name = ") && long.contains("a name of 1001 bytes is too long"), "{long}");
+}
+
+#[test]
+fn too_much_together_is_refused() {
+    let polygon = |count: usize, radius: f64, x: f64| {
+        let corner = |i: usize| {
+            let (sin, cos) = libm::sincos(i as f64 * core::f64::consts::TAU / count as f64);
+            format!("[{:?}, {:?}]", x + radius * cos, 17.0 + radius * sin)
+        };
+        let corners: Vec<String> = (0..count).map(corner).collect();
+        format!("\n[[wall]]\npolygon = [{}]\n", corners.join(", "))
+    };
+    let error = |more: String| Scenario::parse(&(CHANNEL.to_owned() + &more)).unwrap_err().to_string();
+    let crowded = error(polygon(1001, 2.0, 10.0));
+    assert!(crowded.contains("wall[2].polygon = 1001 points: at most 1000"), "{crowded}");
+    assert!(error(polygon(1000, 2.0, 10.0).repeat(20)).contains("wall[21].polygon = 20008 points: with this one"));
+    let points = vec!["[3.0, 10.0]"; 1001].join(", ");
+    let path = CHANNEL.replace("[3.0000, 10.0000]", &points);
+    assert!(Scenario::parse(&path).unwrap_err().to_string().contains("target[0].path = 1002 points: at most 1000"));
+    let outlines = CHANNEL.replace("snapshots = 15", "snapshots = 660") + &polygon(500, 90.0, 0.0).repeat(6);
+    let error = Scenario::parse(&outlines).unwrap_err().to_string();
+    assert!(error.contains("outlines are") && error.contains("660 snapshots"), "{error}");
+    let table =
+        CHANNEL.replace("steepness = 10.0", "steepness = 999.0").replace("d_obstacle = 2.0", "d_obstacle = 99.0");
+    let error = Scenario::parse(&table).unwrap_err().to_string();
+    assert!(error.contains("ring.steepness = 999.0: with distances up to 99.0 metres a table"), "{error}");
+    let twins = format!("{CHANNEL}\n[[target]]\npath = [[3.0, 10.0], [17.0, 10.0]]\n");
+    let error = Scenario::parse(&twins).unwrap_err().to_string();
+    assert!(error.contains("target[1].path: the same path as target[0]"), "{error}");
+    // A target that rests, written as a path of equal points.
+    let rests = CHANNEL.replace("[17.0000, 10.0000]", "[3.0, 10.0]");
+    assert_eq!(Scenario::parse(&rests).unwrap().longest_path(), 0.0);
 }
 
 #[test]
 fn targets_are_counted() {
     let cut = CHANNEL.replace("[[target]]\npath = [[3.0000, 10.0000], [17.0000, 10.0000]]", "");
-    assert_eq!(Scenario::parse(&cut).unwrap_err().value, "0 of them");
+    assert_eq!(Scenario::parse(&cut).unwrap_err().value(), "0 of them");
     let many = format!("{CHANNEL}\n{}", "[[target]]\npath = [[1.0, 1.0]]\n".repeat(4));
-    assert_eq!(Scenario::parse(&many).unwrap_err().value, "5 of them");
+    assert_eq!(Scenario::parse(&many).unwrap_err().value(), "5 of them");
 }
 
 #[test]

@@ -3,9 +3,8 @@
 use crate::board::print;
 use crate::board::slots::{SLOT, SlotMemory};
 use grn_core::robot::link::Server;
-use grn_core::robot::link::message::Arithmetic;
 use grn_core::robot::slots::Layout;
-use grn_core::scalar::Scalar;
+use grn_core::scalar::{NumberType, Scalar};
 
 /// What carries a robot's bytes.
 pub trait Port {
@@ -18,9 +17,9 @@ pub trait Port {
 }
 
 /// Serves the link while bytes come; false if the slots cannot be used.
-pub fn serve<S: Scalar>(arithmetic: Arithmetic, slots: SlotMemory, port: &mut impl Port) -> bool {
+pub fn serve<S: Scalar>(number_type: NumberType, slots: SlotMemory, port: &mut impl Port) -> bool {
     // Taken by reference: moved out of its `Result` it would be on the stack twice.
-    let Ok(server) = &mut Server::<_, S>::start(slots, Layout::adjacent(SLOT), "netduinoplus2", arithmetic) else {
+    let Ok(server) = &mut Server::<_, S>::start(slots, Layout::adjacent(SLOT), "netduinoplus2", number_type) else {
         print("the slots cannot be used\n");
         return false;
     };

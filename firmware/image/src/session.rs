@@ -13,11 +13,11 @@ use core::ops::ControlFlow;
 use grn_core::blob::Identity;
 use grn_core::robot::link::frame::{MAX_WIRE, Receiver, TooLong};
 use grn_core::robot::link::message::{
-    Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, MAX_CHUNK, RESPONSE, Request, Reset, RollBack,
-    Status, encode_request,
+    Activate, Begin, Chunk, Commit, Confirm, Identify, MAX_CHUNK, RESPONSE, Request, Reset, RollBack, Status,
+    encode_request,
 };
 use grn_core::robot::link::server::TRIAL_TICKS;
-use grn_core::scalar::Scalar;
+use grn_core::scalar::{NumberType, Scalar};
 use grn_trials::models::{EH_GRN_1, EH_GRN_2};
 use grn_trials::scene;
 use heapless::Vec;
@@ -53,13 +53,13 @@ const FLASHING: [Act; 11] = [
 const AFTER_A_RESTART: [Act; 4] = [Act::Identify, Act::Reset, Act::Tick, Act::Status];
 
 /// Runs both parts of the session, shows the stack; an exit code.
-pub fn run<S: Scalar>(arithmetic: Arithmetic) -> u8 {
+pub fn run<S: Scalar>(number_type: NumberType) -> u8 {
     let all_done = [&FLASHING[..], &AFTER_A_RESTART].into_iter().all(|acts| {
         let mut host = Host { acts, request: 0, sequence: 0, wire: Wire::new(), sent: 0, asked: 0, answered: true };
         // SAFETY: the one of the part before is gone.
         #[allow(unsafe_code, reason = "the board's slots are taken")]
         let slots = unsafe { SlotMemory::take() };
-        serve::<S>(arithmetic, slots, &mut host) && host.is_content()
+        serve::<S>(number_type, slots, &mut host) && host.is_content()
     });
     show("stack");
     u8::from(!all_done)

@@ -8,10 +8,12 @@ mod division;
 mod dual;
 mod exp;
 mod isqrt;
+mod number_type;
 mod q8_24;
 mod stages;
 
 pub use dual::Dual;
+pub use number_type::{NumberType, UnknownNumberType};
 pub use q8_24::Q8_24;
 pub use stages::Stages;
 

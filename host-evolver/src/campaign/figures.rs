@@ -2,13 +2,13 @@
 
 use super::plan::{Plan, PlannedScenario, slug};
 use super::tables::{Measure, RunRow, Tables, TransferRow};
-use super::unit::{Moment, Unit};
+use super::unit::Unit;
 use crate::evaluation::{Model, World};
-use crate::figures::{pareto_of, pattern};
+use crate::evolve::Milestone;
+use crate::figures::{self, pattern};
 use crate::files::{self, FileError, read_blob};
 use crate::model::describe;
 use grn_figures::FigureError;
-use grn_figures::KneeKind;
 use grn_optimisers::statistics::quartiles;
 use std::path::Path;
 
@@ -42,20 +42,8 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            let points = front.iter().map(|member| grn_figures::ParetoPoint {
-                nodes: member.nodes as u32,
-                f2: member.f2,
-                feasible: member.violation == 0.0,
-                knee: match (member.knee.contains("angle"), member.knee.contains("utility")) {
-                    (true, true) => Some(KneeKind::Both),
-                    (true, false) => Some(KneeKind::Angle),
-                    (false, true) => Some(KneeKind::Utility),
-                    (false, false) => None,
-                },
-                label: describe::without_theta(&member.expression),
-            });
-            if front.iter().any(|member| member.violation == 0.0) {
-                draw(&name("pareto"), pareto_of(&points.collect::<Vec<_>>(), &planned.scenario.ring()))?;
+            if front.iter().any(|member| member.is_feasible()) {
+                draw(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()))?;
             }
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
             draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)))?;
@@ -111,7 +99,7 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceF
         let mut series = Vec::new();
         for (method, planned_method) in plan.methods.iter().enumerate() {
             let units = (1..=plan.seeds).map(|seed| Unit { scenario, method, seed });
-            let histories: Vec<Vec<Moment>> =
+            let histories: Vec<Vec<Milestone>> =
                 units.map(|unit| unit.history(plan, campaign)).collect::<Result<_, _>>()?;
             let moments = histories.iter().map(Vec::len).min().unwrap_or(0);
             let point = |moment: usize| {

@@ -1,11 +1,10 @@
 //! The ways to a model that a campaign can compare. Another is a variant of [`Method`] and its run.
 
 use crate::evaluation::World;
-use crate::evolve::eh_grn::{self, Progress, Structure};
-use crate::evolve::{Advance, Knee, Search, Settings};
-use crate::model::describe;
+use crate::evolve::eh_grn::{self, Structure};
+use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings};
 use crate::model::variation::MotifSet;
-use grn_core::network::Network;
+use grn_optimisers::knee::Knee;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 
@@ -20,6 +19,9 @@ pub enum Method {
         /// Generations of DE that an individual gets, if not one.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         de_generations: Option<usize>,
+        /// What is minimised, if not the paper's two.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        objectives: Option<Objectives>,
     },
     /// EH-GRN with CMA-ES.
     EhGrn {
@@ -28,70 +30,54 @@ pub enum Method {
     },
 }
 
-/// A model of a front.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Solution {
-    /// The model.
-    pub network: Network<f32>,
-    /// f1.
-    pub nodes: usize,
-    /// f2.
-    pub f2: f64,
-    /// Constraint violation, 0 if feasible.
-    pub violation: f64,
-    /// Whether it is a knee of its front; the only member of a front is.
-    pub knee: Knee,
-}
-
-impl Solution {
-    /// Prefix notation with θ.
-    pub fn expression(&self) -> String {
-        describe::expression(&self.network)
-    }
-}
-
 /// What a run leaves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// The non-dominated models, fewest nodes first, at least one.
-    pub front: Vec<Solution>,
+    pub front: Vec<FrontMember>,
     /// One entry a generation.
-    pub history: Vec<Progress>,
+    pub history: Vec<Milestone>,
 }
 
 impl Method {
-    fn settings(motifs: MotifSet, de_generations: Option<usize>, evaluations: usize, seed: u64) -> Settings {
-        let mut settings = Settings { seed, evaluations, motifs, ..Settings::default() };
+    /// The settings of a search, if it is one.
+    fn settings(&self, evaluations: usize, seed: u64) -> Option<Settings> {
+        let Method::Mogp { motifs, de_generations, objectives } = self else { return None };
+        let mut settings = Settings { seed, evaluations, motifs: *motifs, ..Settings::default() };
         settings.de.generations = de_generations.unwrap_or(settings.de.generations);
-        settings
+        settings.objectives = objectives.clone().unwrap_or(settings.objectives);
+        Some(settings)
+    }
+
+    /// What its fronts are fronts of.
+    pub fn objectives(&self) -> Objectives {
+        match self {
+            Method::Mogp { objectives: Some(objectives), .. } => objectives.clone(),
+            Method::Mogp { objectives: None, .. } | Method::EhGrn { .. } => Objectives::paper(),
+        }
     }
 
     /// Whether it can work with that budget; if not, what is wrong.
     pub(super) fn check(&self, evaluations: usize) -> Result<(), String> {
-        match *self {
-            Method::Mogp { motifs, de_generations } => {
-                Method::settings(motifs, de_generations, evaluations, 1).check().map_err(|error| error.to_string())
-            }
-            Method::EhGrn { .. } if evaluations < eh_grn::POPULATION => {
+        match self.settings(evaluations, 1) {
+            Some(settings) => settings.check().map_err(|error| error.to_string()),
+            None if evaluations < eh_grn::POPULATION => {
                 Err(format!("evaluations = {evaluations}: one generation takes {}", eh_grn::POPULATION))
             }
-            Method::EhGrn { .. } => Ok(()),
+            None => Ok(()),
         }
     }
 
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.
     pub fn run(&self, world: &World, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
-        match *self {
-            Method::Mogp { motifs, de_generations } => {
-                mogp(world, Method::settings(motifs, de_generations, evaluations, seed), stop)
-            }
-            Method::EhGrn { structure } => baseline(world, structure, evaluations, seed, stop),
+        match self {
+            Method::Mogp { .. } => mogp(world, self.settings(evaluations, seed)?, stop),
+            Method::EhGrn { structure } => baseline(world, *structure, evaluations, seed, stop),
         }
     }
 }
 
 fn mogp(world: &World, settings: Settings, stop: &AtomicBool) -> Option<Outcome> {
-    let steepness = settings.steepness;
     let mut search = Search::new(world, settings, None).ok()?;
     loop {
         match search.advance(stop, &|_| ()) {
@@ -100,31 +86,16 @@ fn mogp(world: &World, settings: Settings, stop: &AtomicBool) -> Option<Outcome>
             Advance::Interrupted => return None,
         }
     }
-    let solution = |member: crate::evolve::FrontMember| {
-        Some(Solution {
-            network: member.individual.tree.network(steepness).ok()?,
-            nodes: member.individual.tree.size(),
-            f2: member.individual.f2,
-            violation: member.individual.violation,
-            knee: member.knee,
-        })
-    };
-    let front = search.front().into_iter().map(solution).collect::<Option<_>>()?;
-    let history = search.state().history.iter();
-    let progress = history.map(|milestone| Progress {
-        evaluations: milestone.evaluations,
-        best_f2: milestone.best_f2,
-        hypervolume: milestone.hypervolume,
-    });
-    Some(Outcome { front, history: progress.collect() })
+    Some(Outcome { front: search.front(), history: search.state().history.clone() })
 }
 
 fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
     let (tuned, history) = eh_grn::search(structure, world, evaluations, seed, stop)?;
-    let front = vec![Solution {
+    let front = vec![FrontMember {
         network: structure.network(&tuned.thetas)?,
         nodes: structure.nodes(),
         f2: tuned.evaluation.f2,
+        further: Vec::new(),
         violation: tuned.evaluation.violation,
         knee: Knee { angle: true, utility: true },
     }];

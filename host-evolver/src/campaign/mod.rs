@@ -12,7 +12,7 @@ mod trial;
 mod unit;
 mod vary;
 
-pub use method::{Method, Outcome, Solution};
+pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
 pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
 pub use trial::Trial;

@@ -214,7 +214,7 @@ impl Plan {
 }
 
 impl RandomTable {
-    fn worlds(&self, world: &Scenario) -> Result<Vec<Scenario>, firmware_sim::scenario::ScenarioError> {
+    fn worlds(&self, world: &Scenario) -> Result<Vec<Scenario>, firmware_sim::scenario::InputError> {
         let first = self.obstacles.seed;
         let seeds = first..first.saturating_add(self.worlds);
         seeds.map(|seed| world.with_random_obstacles(&RandomObstacles { seed, ..self.obstacles })).collect()

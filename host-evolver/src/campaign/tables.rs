@@ -3,7 +3,7 @@
 use super::plan::Plan;
 use super::trial::Trial;
 use super::unit::Unit;
-use crate::evolve::front_hypervolume;
+use crate::evolve::{FrontMember, deployed, front_hypervolume};
 use crate::files::{self, FileError};
 use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
 use serde::{Deserialize, Serialize};
@@ -243,12 +243,10 @@ impl Tables {
 fn run_row(unit: Unit, plan: &Plan, campaign: &Path) -> Result<RunRow, FileError> {
     let front = unit.front(plan, campaign)?;
     let empty = || FileError::new(campaign.join(unit.folder(plan)), "the front is empty; delete this run");
-    let better = |a: &&super::unit::Member, b: &&super::unit::Member| {
-        a.violation.total_cmp(&b.violation).then(a.f2.total_cmp(&b.f2))
-    };
+    let better = |a: &&FrontMember, b: &&FrontMember| a.violation.total_cmp(&b.violation).then(a.f2.total_cmp(&b.f2));
     let best = front.iter().min_by(better).ok_or_else(empty)?;
-    let knee = front.iter().find(|member| member.knee.contains("utility")).unwrap_or(&front[0]);
-    let feasible = front.iter().filter(|member| member.violation == 0.0);
+    let knee = &front[deployed(&front)];
+    let feasible = front.iter().filter(|member| member.is_feasible());
     let planned = &plan.scenarios[unit.scenario];
     Ok(RunRow {
         scenario: planned.scenario.name().into(),

@@ -3,10 +3,10 @@
 use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
 use crate::evaluation::World;
-use crate::evolve::Knee;
+use crate::evolve::{FrontMember, Milestone, deployed};
 use crate::files::{self, FileError};
 use crate::model::deploy::{self, DEFAULT_SCALE};
-use crate::run::FRONT_HEADER;
+use crate::results;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -34,32 +34,6 @@ pub struct Unit {
     pub method: usize,
     /// Seed.
     pub seed: u64,
-}
-
-/// A line of a run's `front.csv`.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Member {
-    /// f1.
-    pub nodes: usize,
-    /// f2.
-    pub f2: f64,
-    /// Constraint violation.
-    pub violation: f64,
-    /// Which knee it is, in words; empty for none.
-    pub knee: String,
-    /// Prefix notation with θ.
-    pub expression: String,
-}
-
-/// A line of a run's `history.csv`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-pub struct Moment {
-    /// Evaluations of f2 spent.
-    pub evaluations: usize,
-    /// Best f2 of a feasible model so far.
-    pub best_f2: Option<f64>,
-    /// Share of the box below the reference that feasible models dominate.
-    pub hypervolume: f64,
 }
 
 impl Unit {
@@ -122,30 +96,18 @@ impl Unit {
 
     fn write(self, plan: &Plan, folder: &Path, outcome: &Outcome) -> Result<(), FileError> {
         let morphogen = plan.scenarios[self.scenario].scenario.morphogen();
-        let chosen = chosen(outcome.front.iter().map(|solution| solution.knee));
-        let mut rows = Vec::new();
-        for (place, solution) in outcome.front.iter().enumerate() {
-            let blob = deploy::blob(solution.network.clone(), &morphogen, DEFAULT_SCALE);
-            let name = format!("{place:02}-{}-nodes.grn", solution.nodes);
-            if place == chosen {
+        let mut blobs = Vec::new();
+        for (place, member) in outcome.front.iter().enumerate() {
+            let blob = deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
+            let name = format!("{place:02}-{}-nodes.grn", member.nodes);
+            if place == deployed(&outcome.front) {
                 files::write_blob(&folder.join("knee.grn"), &blob)?;
             }
             files::write_blob(&folder.join(&name), &blob)?;
-            rows.push([
-                solution.nodes.to_string(),
-                solution.f2.to_string(),
-                solution.violation.to_string(),
-                solution.knee.to_string(),
-                solution.expression(),
-                name,
-            ]);
+            blobs.push(name);
         }
-        files::write(&folder.join("front.csv"), files::csv(FRONT_HEADER, rows))?;
-        let lines = outcome.history.iter().map(|moment| {
-            let best = moment.best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-            [moment.evaluations.to_string(), best, moment.hypervolume.to_string()]
-        });
-        files::write(&folder.join("history.csv"), files::csv(["evaluations", "best_f2", "hypervolume"], lines))?;
+        results::write_front(folder, &plan.methods[self.method].method.objectives(), &outcome.front, &blobs)?;
+        results::write_history(folder, &outcome.history)?;
         files::write(&folder.join(MANIFEST), files::json(&self.manifest(plan)))
     }
 
@@ -153,20 +115,15 @@ impl Unit {
     ///
     /// # Errors
     /// A damaged file.
-    pub fn front(self, plan: &Plan, campaign: &Path) -> Result<Vec<Member>, FileError> {
-        files::read_csv(&campaign.join(self.folder(plan)).join("front.csv"))
+    pub fn front(self, plan: &Plan, campaign: &Path) -> Result<Vec<FrontMember>, FileError> {
+        results::read_front(&campaign.join(self.folder(plan)))
     }
 
     /// The history of a run that is done.
     ///
     /// # Errors
     /// A damaged file.
-    pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Moment>, FileError> {
-        files::read_csv(&campaign.join(self.folder(plan)).join("history.csv"))
+    pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Milestone>, FileError> {
+        results::read_history(&campaign.join(self.folder(plan)))
     }
-}
-
-/// The place of the knee that is deployed: the first if there is none.
-pub fn chosen(knees: impl Iterator<Item = Knee>) -> usize {
-    knees.into_iter().position(|knee| knee.utility).unwrap_or(0)
 }

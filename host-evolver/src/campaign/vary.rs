@@ -1,6 +1,6 @@
 //! The same world with one number changed: for asking what a result hangs on.
 
-use firmware_sim::scenario::{Morphogen, Ring, Scenario, ScenarioError};
+use firmware_sim::scenario::{Morphogen, Ring, Scenario, InputError};
 use grn_core::field::Kernel;
 use serde::Deserialize;
 
@@ -30,7 +30,7 @@ pub(super) struct Variations {
 
 impl Variations {
     /// The world and its variations; their names say what was changed.
-    pub fn of(&self, scenario: &Scenario) -> Result<Vec<Scenario>, ScenarioError> {
+    pub fn of(&self, scenario: &Scenario) -> Result<Vec<Scenario>, InputError> {
         let (morphogen, ring) = (scenario.morphogen(), scenario.ring());
         let mut all = vec![scenario.clone()];
         let name = |what: &str, factor: f64| format!("{}, {what} x {factor}", scenario.name());

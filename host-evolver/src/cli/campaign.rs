@@ -1,6 +1,6 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, print};
+use super::{Answer, Failure, interrupt, output};
 use crate::campaign::{Campaign, Measure, Plan, Shard, Stage, Tables};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::num::NonZeroUsize;
@@ -37,28 +37,28 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             return Err(Failure::Input(format!("--merge {}: there is no such folder", other.display())));
         }
         let taken = campaign.merge(other)?;
-        eprintln!("{taken} runs taken over from {}", other.display());
+        output::notice(format_args!("{taken} runs taken over from {}", other.display()));
     }
     let stop = interrupt::watch()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
     let progress = Progress::new(campaign.work());
     let stage = pool.install(|| {
-        campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), stop, &|evaluations| progress.add(evaluations))
+        campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &|evaluations| progress.add(evaluations))
     })?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
     match stage {
         Stage::Done => {
-            print(text(&Campaign::tables(&folder)?))?;
-            print(format!("\ntables and figures in {}", folder.display()))?;
+            output::report(text(&Campaign::tables(&folder)?));
+            output::report(format!("\ntables and figures in {}", folder.display()));
             Ok(Answer::Yes)
         }
         stage if stopped => Err(Failure::Interrupted(format!("{stage}; go on with the same command"))),
         stage => {
-            print(format!(
+            output::report(format!(
                 "{stage} in {}; the tables follow when all are: run the other parts, then once more with --merge",
                 folder.display()
-            ))?;
+            ));
             Ok(Answer::Yes)
         }
     }
@@ -83,7 +83,7 @@ impl Progress {
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
             let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            eprintln!("{share} %, {} s left", self.bar.eta().as_secs());
+            output::notice(format_args!("{share} %, {} s left", self.bar.eta().as_secs()));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `grn draw`.
 
-use super::{Answer, Failure, about, print, print_json};
+use super::{Answer, Failure, about, output};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::figures;
 use crate::files::{self, read_blob};
@@ -29,7 +29,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let model = match Model::new(&blob.network, level) {
         Ok(model) => model,
         Err(error) => {
-            eprintln!("grn: {}: {error}", arguments.blob.display());
+            output::notice(format_args!("grn: {}: {error}", arguments.blob.display()));
             return Ok(Answer::No);
         }
     };
@@ -43,9 +43,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         files::write(out, svg)?;
     }
     if arguments.json {
-        print_json(&as_json(&world, &model))?;
+        output::product_json(&as_json(&world, &model))?;
     } else if let Some(out) = &out {
-        print(format!("{} written", out.display()))?;
+        output::report(format!("{} written", out.display()));
     }
     Ok(Answer::Yes)
 }

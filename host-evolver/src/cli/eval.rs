@@ -1,31 +1,40 @@
 //! `grn eval`.
 
-use super::{Answer, Failure, about, print};
+use super::output::Reader;
+use super::{Answer, Failure, about, output};
 use crate::files::read_blob;
-use clap::ValueEnum;
 use grn_core::blob::Blob;
 use grn_core::network::Network;
-use grn_core::scalar::{Q8_24, Scalar};
+use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use std::io::BufRead;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The controller.
     blob: PathBuf,
-    /// Number type to compute in.
+    /// Number type to compute in: f64, f32, q8.24.
     #[arg(long, default_value = "f64")]
     number: EvalNumber,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+/// The host's reference, or what robots compute in.
+#[derive(Clone, Copy)]
 enum EvalNumber {
-    #[value(name = "f64")]
     F64,
-    #[value(name = "f32")]
-    F32,
-    #[value(name = "q8.24")]
-    Q824,
+    Robot(NumberType),
+}
+
+impl FromStr for EvalNumber {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, &'static str> {
+        match text {
+            "f64" => Ok(EvalNumber::F64),
+            _ => text.parse().map(EvalNumber::Robot).map_err(|_| "f64, f32 or q8.24 is needed"),
+        }
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
@@ -37,7 +46,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             let place = format!("standard input, line {}", index + 1);
             Failure::Input(format!("{place}: {line:?} is not two finite numbers like 0.5,0.25"))
         })?;
-        print(evaluate(x1, x2))?;
+        if output::product(evaluate(x1, x2))? == Reader::Gone {
+            break;
+        }
     }
     Ok(Answer::Yes)
 }
@@ -56,7 +67,7 @@ fn evaluator(blob: &Blob, number: EvalNumber) -> Box<dyn Fn(f64, f64) -> String>
         (blob.network.cast::<f64>(), blob.network.cast::<f32>(), blob.network.cast::<Q8_24>());
     match number {
         EvalNumber::F64 => Box::new(move |x1, x2| steady(&in_f64, x1, x2).to_string()),
-        EvalNumber::F32 => Box::new(move |x1, x2| steady(&in_f32, x1, x2).to_string()),
-        EvalNumber::Q824 => Box::new(move |x1, x2| steady(&in_q824, x1, x2).to_f64().to_string()),
+        EvalNumber::Robot(NumberType::F32) => Box::new(move |x1, x2| steady(&in_f32, x1, x2).to_string()),
+        EvalNumber::Robot(NumberType::Q8_24) => Box::new(move |x1, x2| steady(&in_q824, x1, x2).to_f64().to_string()),
     }
 }

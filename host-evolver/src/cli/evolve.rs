@@ -1,15 +1,15 @@
 //! `grn evolve`.
 
 use super::simulate::{DEFAULT_ROBOTS, table, usual_config, watched, write_folder};
-use super::{Answer, Failure, about, interrupt, print};
+use super::{Answer, Failure, about, interrupt, output};
 use crate::evaluation::World;
-use crate::evolve::{Advance, FrontMember, Search, Settings};
+use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::variation::MotifSet;
 use crate::run::{Manifest, RunFolder};
-use crate::simulation::Number;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
+use grn_core::scalar::NumberType;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -32,6 +32,9 @@ pub struct Arguments {
     /// Motifs to build with: all ten, or the eight with two inputs.
     #[arg(long, default_value = "all")]
     motifs: Motifs,
+    /// What to minimise: two or three of the objectives' names, separated by commas.
+    #[arg(long, default_value_t = Objectives::paper(), value_name = "NAMES")]
+    objectives: Objectives,
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE)]
     scale: f32,
@@ -58,6 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             Motifs::All => MotifSet::All,
             Motifs::Binary => MotifSet::Binary,
         },
+        objectives: arguments.objectives.clone(),
         ..Settings::default()
     };
     if !(0.01..=10.0).contains(&arguments.scale) {
@@ -73,23 +77,25 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     } else {
         (RunFolder::create(&folder, &manifest, &scenario)?, None)
     };
-    let mut search = Search::new(&world, settings, state)?;
+    let mut search = Search::new(&world, settings.clone(), state)?;
     let stop = interrupt::watch()?;
-    search_on(&mut search, &run, arguments.threads, stop, &folder)?;
+    search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
     let knee = run.finish(&search, &world, arguments.scale)?;
     let front = search.front();
-    print(front_table(&front))?;
-    print(format!("\nresults in {}\n", folder.display()))?;
-    if front.iter().any(|member| !member.individual.is_feasible()) {
-        print("infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations")?;
+    output::report(front_table(&settings.objectives, &front));
+    output::report(format!("\nresults in {}\n", folder.display()));
+    if front.iter().any(|member| !member.is_feasible()) {
+        output::report(
+            "infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations",
+        );
         return Ok(Answer::No);
     }
     let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
-    let simulation = watched(&knee, &scenario, config, Number::F32, stop)?;
+    let simulation = watched(&knee, &scenario, config, NumberType::F32, &stop)?;
     write_folder(&run.path("simulation"), &simulation, &scenario, &knee)?;
-    print(format!("the knee on {robots} simulated robots (simulation/trace.svg):"))?;
-    print(table(&simulation))?;
+    output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
+    output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
 
@@ -139,12 +145,12 @@ fn search_on(
                 run.save(search.state())?;
                 if bar.is_hidden() {
                     let best = search.state().history.last().and_then(|milestone| milestone.best_f2);
-                    eprintln!(
+                    output::notice(format_args!(
                         "generation {}: {} evaluations, {}",
                         search.state().generation,
                         search.state().evaluations,
                         best_text(best)
-                    );
+                    ));
                 }
             }
             Advance::Finished => {
@@ -168,17 +174,13 @@ fn best_text(best: Option<f64>) -> String {
     best.map_or("nothing feasible yet".into(), |f2| format!("best f2 {f2:.5}"))
 }
 
-fn front_table(front: &[FrontMember]) -> String {
-    let mut text = format!("{:>5}  {:<9}{:<15}{}", "nodes", "f2", "knee", "expression");
+fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {
+    let further: String = objectives.further_names().map(|name| format!("{name:<13}")).collect();
+    let mut text = format!("{:>5}  {:<9}{further}{:<15}{}", "nodes", "f2", "knee", "expression");
     for member in front {
-        let individual = &member.individual;
-        text += &format!(
-            "\n{:>5}  {:<9.5}{:<15}{}",
-            individual.tree.size(),
-            individual.f2,
-            member.knee.to_string(),
-            individual.tree
-        );
+        let further: String = member.further.iter().map(|value| format!("{value:<13.5}")).collect();
+        let (nodes, f2, knee) = (member.nodes, member.f2, member.knee.to_string());
+        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression());
     }
     text
 }

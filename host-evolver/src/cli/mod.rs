@@ -1,18 +1,24 @@
 //! The command line: one file a subcommand.
 
 mod campaign;
+mod connection;
 mod draw;
 mod eval;
 mod evolve;
 mod flash;
 mod interrupt;
+mod output;
 mod robots;
 mod scatter;
 mod show;
 mod simulate;
+mod trial;
 
+use crate::files;
 use clap::{Parser, Subcommand};
+use std::error::Error;
 use std::fmt;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 /// Evolve gene-regulatory-network controllers for robot swarms, prove them in simulation, look at them.
@@ -24,7 +30,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
-                          130 interrupted.";
+                          3 the system failed (disk full); 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -42,6 +48,10 @@ enum Command {
     Flash(flash::Arguments),
     /// List the robots that answer on the given ports.
     Robots(robots::Arguments),
+    /// Keep the blob that is in charge of a robot: end its trial.
+    Confirm(trial::Arguments),
+    /// Take the blob out of charge of a robot and put the one before it back.
+    Rollback(trial::Arguments),
     /// Read `x1,x2` lines from standard input and print the steady state M of each.
     Eval(eval::Arguments),
     /// Draw a blob's pattern at each snapshot of a scenario.
@@ -58,58 +68,98 @@ enum Answer {
 enum Failure {
     /// Bad input, in words that name the file, the place, the value and the way out.
     Input(String),
+    /// The system failed: a full disk, a device that breaks. The same command may work another time.
+    System(String),
     Interrupted(String),
+    /// A command line that clap has refused in its own words.
+    Told,
 }
 
-impl<E: std::error::Error> From<E> for Failure {
+impl Failure {
+    /// Whose fault an error is follows from what lies under it.
+    fn new(error: &(dyn Error + 'static)) -> Failure {
+        let mut message = error.to_string();
+        let mut of_system = false;
+        let mut link = Some(error);
+        while let Some(error) = link {
+            let text = error.to_string();
+            if !message.contains(&text) {
+                message = format!("{message}: {text}");
+            }
+            of_system |= error.downcast_ref().is_some_and(files::is_fault_of_system);
+            link = error.source();
+        }
+        if of_system { Failure::System(message) } else { Failure::Input(message) }
+    }
+
+    /// Puts in front what it is about.
+    fn about(self, place: impl fmt::Display) -> Failure {
+        match self {
+            Failure::Input(message) => Failure::Input(format!("{place}: {message}")),
+            Failure::System(message) => Failure::System(format!("{place}: {message}")),
+            other => other,
+        }
+    }
+}
+
+impl<E: Error + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Failure::Input(error.to_string())
+        Failure::new(&error)
     }
 }
 
 /// Prefixes an error that does not know which file it is about.
-fn about<E: fmt::Display>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
-    move |error| Failure::Input(format!("{place}: {error}"))
+fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
+    move |error| Failure::new(error.into().as_ref()).about(place)
 }
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
-    let result = match Cli::parse().command {
-        Command::Evolve(arguments) => evolve::run(&arguments),
-        Command::Campaign(arguments) => campaign::run(&arguments),
-        Command::Simulate(arguments) => simulate::run(&arguments),
-        Command::Scatter(arguments) => scatter::run(&arguments),
-        Command::Flash(arguments) => flash::run(&arguments),
-        Command::Robots(arguments) => robots::run(&arguments),
-        Command::Show(arguments) => show::run(&arguments),
-        Command::Eval(arguments) => eval::run(&arguments),
-        Command::Draw(arguments) => draw::run(&arguments),
+    let answer = match Cli::try_parse() {
+        Ok(cli) => answer(&cli.command),
+        Err(error) => explain(&error),
     };
-    match result {
+    match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
         Err(Failure::Input(message)) => {
-            eprintln!("grn: {message}");
+            output::notice(format_args!("grn: {message}"));
             ExitCode::from(2)
         }
+        Err(Failure::Told) => ExitCode::from(2),
+        Err(Failure::System(message)) => {
+            output::notice(format_args!("grn: {message}"));
+            ExitCode::from(3)
+        }
         Err(Failure::Interrupted(message)) => {
-            eprintln!("grn: interrupted. {message}");
-            ExitCode::from(130)
+            output::notice(format_args!("grn: interrupted. {message}"));
+            ExitCode::from(interrupt::CODE)
         }
     }
 }
 
-/// Prints to standard output; a reader that has gone away ends the command quietly.
-fn print(text: impl fmt::Display) -> Result<(), Failure> {
-    use std::io::Write;
-    let written = writeln!(std::io::stdout(), "{text}");
-    match written {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
-        other => other.map_err(about("standard output")),
+/// Prints help or the version if they were asked for, else what is wrong with the command line.
+fn explain(error: &clap::Error) -> Result<Answer, Failure> {
+    let printed = error.print().and_then(|()| std::io::stdout().flush());
+    match printed {
+        _ if error.use_stderr() => Err(Failure::Told),
+        Err(failure) if failure.kind() != ErrorKind::BrokenPipe => Err(Failure::new(&failure).about("standard output")),
+        _ => Ok(Answer::Yes),
     }
 }
 
-/// Prints a value as JSON.
-fn print_json(value: &serde_json::Value) -> Result<(), Failure> {
-    print(serde_json::to_string_pretty(value)?)
+fn answer(command: &Command) -> Result<Answer, Failure> {
+    match command {
+        Command::Evolve(arguments) => evolve::run(arguments),
+        Command::Campaign(arguments) => campaign::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Scatter(arguments) => scatter::run(arguments),
+        Command::Flash(arguments) => flash::run(arguments),
+        Command::Robots(arguments) => robots::run(arguments),
+        Command::Confirm(arguments) => trial::run(arguments, trial::End::Confirm),
+        Command::Rollback(arguments) => trial::run(arguments, trial::End::RollBack),
+        Command::Show(arguments) => show::run(arguments),
+        Command::Eval(arguments) => eval::run(arguments),
+        Command::Draw(arguments) => draw::run(arguments),
+    }
 }

@@ -1,6 +1,6 @@
 //! `grn scatter`.
 
-use super::{Answer, Failure, print};
+use super::{Answer, Failure, output};
 use crate::files;
 use firmware_sim::scenario::{RandomObstacles, Scenario};
 use std::path::PathBuf;
@@ -33,7 +33,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let world = scenario.with_random_obstacles(&RandomObstacles { seed, density, radius, clearance })?;
     match &arguments.out {
         Some(path) => files::write(path, world.to_toml())?,
-        None => print(world.to_toml().trim_end())?,
+        None => {
+            output::product(world.to_toml().trim_end())?;
+        }
     }
     Ok(Answer::Yes)
 }

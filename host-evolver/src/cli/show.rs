@@ -1,6 +1,6 @@
 //! `grn show`.
 
-use super::{Answer, Failure, about, print, print_json};
+use super::{Answer, Failure, about, output};
 use crate::evaluation::Model;
 use crate::files::read_blob;
 use crate::model::describe;
@@ -21,9 +21,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
     let bytes = std::fs::metadata(&arguments.blob).map_err(about(arguments.blob.display()))?.len();
     if arguments.json {
-        print_json(&as_json(&blob, bytes))?
+        output::product_json(&as_json(&blob, bytes))?;
     } else {
-        print(as_text(&blob, bytes))?
+        output::product(as_text(&blob, bytes))?;
     }
     Ok(Answer::Yes)
 }

@@ -1,14 +1,15 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, print, print_json};
+use super::{Answer, Failure, about, interrupt, output};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
 use crate::files::{self, read_blob};
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Number, Simulation, SimulationError};
+use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Simulation, SimulationError};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
+use grn_core::scalar::NumberType;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::ops::ControlFlow;
@@ -42,7 +43,7 @@ pub struct Arguments {
     speed: f64,
     /// Number type the robots compute in.
     #[arg(long, default_value = "f32")]
-    number: Number,
+    number: NumberType,
     /// Where controllers run: all in this process, or some in QEMU, from the image that is flashed.
     #[arg(long, default_value = "native")]
     target: Target,
@@ -83,17 +84,15 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         ..usual_config(&blob, arguments.robots)
     };
     let stop = interrupt::watch()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, stop).map_err(|failure| match failure {
-        Failure::Input(message) => Failure::Input(format!("{}: {message}", arguments.blob.display())),
-        other => other,
-    })?;
+    let simulation = simulated(arguments, &blob, &scenario, config, &stop)
+        .map_err(|failure| failure.about(arguments.blob.display()))?;
     if let Some(folder) = &arguments.out {
         write_folder(folder, &simulation, &scenario, &blob)?;
     }
     if arguments.json {
-        print_json(&as_json(&simulation, arguments.number))?;
+        output::product_json(&as_json(&simulation, arguments.number))?;
     } else {
-        print(table(&simulation))?;
+        output::report(table(&simulation));
     }
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
@@ -112,8 +111,8 @@ fn simulated(
         Target::Qemu => {
             let image = arguments.image.clone().unwrap_or_else(|| {
                 Path::new(IMAGES).join(match number {
-                    Number::F32 => "robot-f32",
-                    Number::Q824 => "robot-q8_24",
+                    NumberType::F32 => "robot-f32",
+                    NumberType::Q8_24 => "robot-q8_24",
                 })
             });
             let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
@@ -140,7 +139,7 @@ pub fn watched(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
-    number: Number,
+    number: NumberType,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
     with_progress(stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
@@ -174,11 +173,11 @@ pub fn write_folder(folder: &Path, simulation: &Simulation, scenario: &Scenario,
     Ok(())
 }
 
-fn as_json(simulation: &Simulation, number: Number) -> serde_json::Value {
+fn as_json(simulation: &Simulation, number: NumberType) -> serde_json::Value {
     metrics_json(simulation, Some(number))
 }
 
-fn metrics_json(simulation: &Simulation, number: Option<Number>) -> serde_json::Value {
+fn metrics_json(simulation: &Simulation, number: Option<NumberType>) -> serde_json::Value {
     json!({
         "scenario": simulation.trace.header().scenario,
         "seed": simulation.trace.header().seed,

@@ -1,7 +1,8 @@
 //! The baseline: an EH-GRN of fixed structure whose 13 θ are found by CMA-ES.
 
+use super::front::front_hypervolume;
+use super::state::Milestone;
 use crate::evaluation::{Evaluation, Evaluator, Model, World};
-use crate::evolve::front_hypervolume;
 use crate::model::describe;
 use crate::model::published::{PUBLISHED, Published};
 use grn_core::network::{Network, THETA_RANGE};
@@ -73,17 +74,6 @@ pub struct Tuned {
     pub evaluation: Evaluation,
 }
 
-/// How far a run had come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Evaluations of f2 spent.
-    pub evaluations: usize,
-    /// Best f2 of a feasible model so far.
-    pub best_f2: Option<f64>,
-    /// Share of the box below the reference that feasible models dominate.
-    pub hypervolume: f64,
-}
-
 /// Searches θ with a budget of `evaluations`. CMA-ES starts at a random mean, and again at another whenever it has
 /// nothing left to learn. Returns `None` if it was stopped.
 ///
@@ -95,7 +85,7 @@ pub fn search(
     evaluations: usize,
     seed: u64,
     stop: &AtomicBool,
-) -> Option<(Tuned, Vec<Progress>)> {
+) -> Option<(Tuned, Vec<Milestone>)> {
     let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
     let dimension = structure.published().gene_count();
     let bounds = Bounds::cube(dimension, low, high).ok()?;
@@ -125,7 +115,7 @@ pub fn search(
         if order.len() == POPULATION {
             cma.tell(&order);
         }
-        history.extend(best.as_ref().map(|best| progress(structure, spent, best)));
+        history.extend(best.as_ref().map(|best| milestone(structure, spent, best)));
     }
     best.map(|best| (best, history))
 }
@@ -138,10 +128,12 @@ fn evaluate_all(structure: Structure, evaluator: &mut Evaluator<'_>, population:
     evaluator.evaluate_best(&models, POPULATION / 2, None)
 }
 
-fn progress(structure: Structure, evaluations: usize, best: &Tuned) -> Progress {
+fn milestone(structure: Structure, evaluations: usize, best: &Tuned) -> Milestone {
     let feasible = best.evaluation.is_feasible().then_some(best.evaluation.f2);
     let point = feasible.map(|f2| [structure.nodes() as f64, f2]);
-    Progress { evaluations, best_f2: feasible, hypervolume: front_hypervolume(point.into_iter()) }
+    let count = usize::from(feasible.is_some());
+    let hypervolume = front_hypervolume(point.into_iter());
+    Milestone { evaluations, best_f2: feasible, feasible: count, front: count, hypervolume }
 }
 
 #[cfg(test)]

@@ -1,16 +1,39 @@
-//! What the search minimises. A further objective is a type that implements [`Objective`], given to
-//! [`Search::with`](crate::evolve::Search::with).
+//! What the search minimises.
+//!
+//! A further objective is a type that implements [`Objective`] in a file of its own and a line in [`ALL`]. It then can be
+//! asked for by its name, is computed once for every individual, and has its column in every file and figure.
 
-use super::individual::Individual;
-use grn_optimisers::nsga2::Scores;
+use crate::evaluation::{Evaluation, Model, World};
+use crate::model::tree::Tree;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
 
-/// Something to be minimised. It is asked for several times an individual, so one that costs much should remember.
-pub trait Objective: Sync {
-    /// Its name in tables.
-    fn name(&self) -> &'static str;
-    /// Its value, less is better.
-    fn value(&self, individual: &Individual) -> f64;
+/// What an objective is computed from: a model whose θ have been tuned, seen once.
+#[derive(Clone, Copy)]
+pub struct Candidate<'a> {
+    /// The tree with its θ.
+    pub tree: &'a Tree,
+    /// The model that its blob holds; `None` if it has no pattern.
+    pub model: Option<&'a Model>,
+    /// The paper's f2 and the constraint violation in the world.
+    pub evaluation: Evaluation,
+    /// The world it was evaluated in.
+    pub world: &'a World,
 }
+
+/// Something to be minimised.
+pub trait Objective: Sync {
+    /// Its name on the command line, in files and in figures: lower case, digits, hyphens.
+    fn name(&self) -> &'static str;
+    /// What it measures and its unit, for people.
+    fn description(&self) -> &'static str;
+    /// Its value, less is better.
+    fn value(&self, candidate: &Candidate<'_>) -> f64;
+}
+
+/// All objectives, the paper's first.
+pub const ALL: &[&'static dyn Objective] = &[&Nodes, &RingError];
 
 /// f1: nodes of the tree, functions and terminals.
 pub struct Nodes;
@@ -19,8 +42,11 @@ impl Objective for Nodes {
     fn name(&self) -> &'static str {
         "nodes"
     }
-    fn value(&self, individual: &Individual) -> f64 {
-        individual.tree.size() as f64
+    fn description(&self) -> &'static str {
+        "complexity f1, nodes of the tree"
+    }
+    fn value(&self, candidate: &Candidate<'_>) -> f64 {
+        candidate.tree.size() as f64
     }
 }
 
@@ -31,12 +57,136 @@ impl Objective for RingError {
     fn name(&self) -> &'static str {
         "f2"
     }
-    fn value(&self, individual: &Individual) -> f64 {
-        individual.f2
+    fn description(&self) -> &'static str {
+        "the paper's pattern error f2"
+    }
+    fn value(&self, candidate: &Candidate<'_>) -> f64 {
+        candidate.evaluation.f2
     }
 }
 
-/// The objectives' values of an individual and its violation, for Deb's rule.
-pub fn scores<const M: usize>(individual: &Individual, objectives: &[&dyn Objective; M]) -> Scores<M> {
-    Scores { objectives: objectives.map(|objective| objective.value(individual)), violation: individual.violation }
+/// The objectives of a run: two or three different ones, in the order in which they were asked for.
+#[derive(Clone, Serialize, Deserialize)]
+#[serde(try_from = "Vec<String>", into = "Vec<String>")]
+pub struct Objectives(Vec<&'static dyn Objective>);
+
+impl Objectives {
+    /// The paper's: f1 and f2.
+    pub fn paper() -> Self {
+        Objectives(vec![&Nodes, &RingError])
+    }
+
+    /// These objectives.
+    ///
+    /// # Errors
+    /// Fewer than two, more than three, or one given twice.
+    pub fn new(objectives: Vec<&'static dyn Objective>) -> Result<Self, ObjectivesError> {
+        if !(2..=3).contains(&objectives.len()) {
+            return Err(ObjectivesError::Count(objectives.len()));
+        }
+        let repeated =
+            |(place, name): (usize, &&str)| objectives[..place].iter().any(|earlier| earlier.name() == *name);
+        let names: Vec<&'static str> = objectives.iter().map(|objective| objective.name()).collect();
+        match names.iter().enumerate().find(|&entry| repeated(entry)) {
+            Some((_, name)) => Err(ObjectivesError::Repeated(name)),
+            None => Ok(Objectives(objectives)),
+        }
+    }
+
+    /// Their names, in order.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|objective| objective.name())
+    }
+
+    /// The names of those that are neither nodes nor f2, which every file has anyway.
+    pub fn further_names(&self) -> impl Iterator<Item = &'static str> {
+        self.names().filter(|name| is_further(name))
+    }
+
+    /// The values, of all in order, that belong to [`Objectives::further_names`].
+    pub fn further(&self, values: &[f64]) -> Vec<f64> {
+        self.names().zip(values).filter(|(name, _)| is_further(name)).map(|(_, &value)| value).collect()
+    }
+
+    /// Their values of a candidate, in order. A value that is not finite becomes the largest number: files hold no other.
+    pub fn values(&self, candidate: &Candidate<'_>) -> Vec<f64> {
+        let finite = |value: f64| if value.is_finite() { value } else { f64::MAX };
+        self.0.iter().map(|objective| finite(objective.value(candidate))).collect()
+    }
 }
+
+fn is_further(name: &str) -> bool {
+    name != Nodes.name() && name != RingError.name()
+}
+
+impl fmt::Debug for Objectives {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.names()).finish()
+    }
+}
+
+impl fmt::Display for Objectives {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.names().collect::<Vec<_>>().join(","))
+    }
+}
+
+impl PartialEq for Objectives {
+    fn eq(&self, other: &Self) -> bool {
+        self.names().eq(other.names())
+    }
+}
+
+impl From<Objectives> for Vec<String> {
+    fn from(objectives: Objectives) -> Self {
+        objectives.names().map(String::from).collect()
+    }
+}
+
+impl TryFrom<Vec<String>> for Objectives {
+    type Error = ObjectivesError;
+
+    fn try_from(names: Vec<String>) -> Result<Self, ObjectivesError> {
+        let known = |name: String| {
+            let found = ALL.iter().find(|objective| objective.name() == name);
+            found.copied().ok_or(ObjectivesError::Unknown(name))
+        };
+        Objectives::new(names.into_iter().map(known).collect::<Result<_, _>>()?)
+    }
+}
+
+impl FromStr for Objectives {
+    type Err = ObjectivesError;
+
+    /// Names separated by commas: `nodes,f2`.
+    fn from_str(text: &str) -> Result<Self, ObjectivesError> {
+        Objectives::try_from(text.split(',').map(|name| name.trim().to_owned()).collect::<Vec<_>>())
+    }
+}
+
+/// What no run can minimise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ObjectivesError {
+    /// No objective has this name.
+    Unknown(String),
+    /// Two or three are needed.
+    Count(usize),
+    /// One stands there twice.
+    Repeated(&'static str),
+}
+
+impl fmt::Display for ObjectivesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ObjectivesError::Unknown(name) => {
+                let known: Vec<_> = ALL.iter().map(|objective| objective.name()).collect();
+                write!(f, "{name:?} is no objective; there are {}", known.join(", "))
+            }
+            ObjectivesError::Count(count) => write!(f, "{count} objectives: give two or three, as in nodes,f2"),
+            ObjectivesError::Repeated(name) => write!(f, "{name} stands there twice: give two or three different ones"),
+        }
+    }
+}
+
+impl std::error::Error for ObjectivesError {}

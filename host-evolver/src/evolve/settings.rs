@@ -1,5 +1,6 @@
 //! What decides a run besides the scenario.
 
+use super::objective::Objectives;
 use crate::model::variation::MotifSet;
 use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ pub struct Settings {
     pub seed: u64,
     /// Budget: evaluations of f2, all counted.
     pub evaluations: usize,
+    /// What is minimised.
+    pub objectives: Objectives,
     /// Individuals in a generation.
     pub population: usize,
     /// Motifs to build with.
@@ -49,6 +52,7 @@ impl Default for Settings {
         Settings {
             seed: 1,
             evaluations: 4000,
+            objectives: Objectives::paper(),
             population: 40,
             motifs: MotifSet::All,
             depth: (1, 4),

@@ -1,5 +1,8 @@
+use super::objective::{Candidate, Nodes, RingError};
 use super::*;
+use crate::evaluation::World;
 use firmware_sim::scenario::Scenario;
+use std::sync::atomic::AtomicBool;
 
 fn channel() -> World {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/channel.toml");
@@ -95,21 +98,71 @@ impl Objective for Depth {
     fn name(&self) -> &'static str {
         "depth"
     }
-    fn value(&self, individual: &Individual) -> f64 {
-        individual.tree.depth() as f64
+    fn description(&self) -> &'static str {
+        "edges from the root to the farthest leaf"
+    }
+    fn value(&self, candidate: &Candidate<'_>) -> f64 {
+        candidate.tree.depth() as f64
     }
 }
 
 #[test]
 fn a_third_objective_needs_nothing_but_itself() {
     let world = channel();
-    let grammar = Grammar::new(crate::model::variation::MotifSet::All, (1, 4), (0.0, 2.0));
-    let objectives: [&dyn Objective; 3] = [&Nodes, &RingError, &Depth];
-    let mut search = Search::with(&world, small(), objectives, Box::new(grammar), None).unwrap();
-    let go = AtomicBool::new(false);
-    while search.advance(&go, &|_| {}) == Advance::Generation {}
+    let objectives = Objectives::new(vec![&Nodes, &RingError, &Depth]).unwrap();
+    let mut search = Search::new(&world, Settings { objectives, ..small() }, None).unwrap();
+    run(&mut search, 2);
     let front = search.front();
-    let scores: Vec<_> = front.iter().map(|member| scores(&member.individual, &objectives)).collect();
-    assert!(scores.iter().all(|a| scores.iter().all(|b| !a.dominates(b))));
-    assert!(front.iter().all(|member| member.individual.is_feasible()));
+    let values: Vec<[f64; 3]> = front.iter().map(|m| [m.nodes as f64, m.f2, m.further[0]]).collect();
+    let dominates = |a: &[f64; 3], b: &[f64; 3]| a != b && a.iter().zip(b).all(|(a, b)| a <= b);
+    assert!(values.iter().all(|a| values.iter().all(|b| !dominates(a, b))), "{values:?}");
+    assert!(front.iter().all(FrontMember::is_feasible));
+    for individual in &search.state().population {
+        assert_eq!(
+            individual.objectives,
+            [individual.tree.size() as f64, individual.f2, individual.tree.depth() as f64]
+        );
+    }
+}
+
+#[test]
+fn an_objective_is_computed_once_for_every_individual() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    static ASKED: AtomicUsize = AtomicUsize::new(0);
+    struct Counted;
+    impl Objective for Counted {
+        fn name(&self) -> &'static str {
+            "counted"
+        }
+        fn description(&self) -> &'static str {
+            "always 0"
+        }
+        fn value(&self, _: &Candidate<'_>) -> f64 {
+            ASKED.fetch_add(1, Ordering::Relaxed);
+            0.0
+        }
+    }
+    let world = channel();
+    let objectives = Objectives::new(vec![&Nodes, &RingError, &Counted]).unwrap();
+    let settings = Settings { objectives, ..small() };
+    let each = settings.evaluations_each();
+    let mut search = Search::new(&world, settings, None).unwrap();
+    run(&mut search, 2);
+    search.front();
+    assert_eq!(ASKED.load(Ordering::Relaxed), search.state().evaluations / each);
+}
+
+#[test]
+fn wrong_objectives_are_refused_by_name() {
+    for (text, word) in [
+        ("nodes", "1 objectives"),
+        ("nodes,f2,f2", "f2 stands there twice"),
+        ("nodes,f3", "\"f3\" is no objective; there are nodes, f2"),
+        ("nodes,f2,nodes,f2", "4 objectives"),
+        ("", "is no objective"),
+    ] {
+        let error = text.parse::<Objectives>().unwrap_err().to_string();
+        assert!(error.contains(word), "{text}: {error}");
+    }
+    assert_eq!("f2, nodes".parse::<Objectives>().unwrap().to_string(), "f2,nodes");
 }

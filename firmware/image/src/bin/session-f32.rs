@@ -2,11 +2,11 @@
 #![no_std]
 #![no_main]
 
-use grn_core::robot::link::message::Arithmetic;
+use grn_core::scalar::NumberType;
 use grn_firmware::session;
 
 grn_firmware::entry!(main);
 
 fn main() -> u8 {
-    session::run::<f32>(Arithmetic::F32)
+    session::run::<f32>(NumberType::F32)
 }

@@ -2,12 +2,11 @@
 #![no_std]
 #![no_main]
 
-use grn_core::robot::link::message::Arithmetic;
-use grn_core::scalar::Q8_24;
+use grn_core::scalar::{NumberType, Q8_24};
 use grn_firmware::session;
 
 grn_firmware::entry!(main);
 
 fn main() -> u8 {
-    session::run::<Q8_24>(Arithmetic::Q8_24)
+    session::run::<Q8_24>(NumberType::Q8_24)
 }

@@ -4,6 +4,7 @@ use super::frame::{self, MAX_WIRE, TooLong};
 use crate::blob::Identity;
 use crate::robot::percept::{Command, Percept};
 use crate::robot::slots::SlotStatus;
+use crate::scalar::NumberType;
 use heapless::{String, Vec};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -110,15 +111,6 @@ pub struct Reset {
     pub robot: u8,
 }
 
-/// What number type a robot computes in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Arithmetic {
-    /// IEEE-754 single precision.
-    F32,
-    /// Fixed point, 24 fractional bits.
-    Q8_24,
-}
-
 /// What a robot is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct About {
@@ -131,7 +123,7 @@ pub struct About {
     /// The most bytes of a blob it stores.
     pub blob_bytes: u16,
     /// What it computes in.
-    pub arithmetic: Arithmetic,
+    pub number_type: NumberType,
     /// What it calls itself.
     pub name: String<24>,
 }

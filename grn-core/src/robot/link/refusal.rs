@@ -51,6 +51,8 @@ pub enum Refusal {
     Load(LoadFault),
     /// No blob is in charge.
     NoController,
+    /// The blob in charge has the highest upload number there is, so no upload could be newer.
+    SequenceUsedUp,
 }
 
 /// What is wrong with a blob, as far as a robot tells.
@@ -134,6 +136,7 @@ impl From<SlotError> for Refusal {
             SlotError::NotThere => Refusal::NotThere,
             SlotError::NoFallback => Refusal::NoFallback,
             SlotError::MarksUsedUp => Refusal::MarksUsedUp,
+            SlotError::SequenceUsedUp => Refusal::SequenceUsedUp,
         }
     }
 }
@@ -179,6 +182,10 @@ impl fmt::Display for Refusal {
                 "time_scale and step do not give 1 to 64 whole RK4 steps a tick: write the blob with others"
             }
             Refusal::NoController => "no blob is in charge: upload and activate one",
+            Refusal::SequenceUsedUp => {
+                "the blob in charge has the highest upload number, 4294967295, so no upload could be newer: roll it back, or \
+                 write its slot with a programmer and a lower number"
+            }
         })
     }
 }

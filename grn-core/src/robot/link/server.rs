@@ -4,8 +4,8 @@
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
-    About, Activate, Arithmetic, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request,
-    Reset, RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
+    About, Activate, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request, Reset,
+    RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
 };
 use super::refusal::Refusal;
 use crate::blob::{Blob, FORMAT_VERSION, Identity};
@@ -13,7 +13,7 @@ use crate::network::DEFAULT_GENES;
 use crate::robot::controller::Controller;
 use crate::robot::percept::{Command, Percept};
 use crate::robot::slots::{Layout, MAX_BLOB, SlotError, Slots};
-use crate::scalar::Scalar;
+use crate::scalar::{NumberType, Scalar};
 use embedded_storage::nor_flash::{NorFlash, NorFlashErrorKind};
 use heapless::{String, Vec};
 
@@ -44,10 +44,10 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
     /// # Errors
     /// [`SlotError::Layout`], or what the flash says.
     #[inline(never)]
-    pub fn start(flash: F, layout: Layout, name: &str, arithmetic: Arithmetic) -> Result<Self, SlotError> {
+    pub fn start(flash: F, layout: Layout, name: &str, number_type: NumberType) -> Result<Self, SlotError> {
         let slots = Slots::start(flash, layout, |blob| loads::<S>(blob).is_ok())?;
         let name = String::try_from(name).unwrap_or_default();
-        let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, arithmetic };
+        let robot = Robot { slots, controller: None, ticks: 0, number: 0, name, number_type };
         let mut server = Server { receiver: Receiver::new(), last: None, response: Vec::new(), robot };
         match server.robot.reset(0) {
             // Without a blob in charge the robot waits for one.
@@ -92,7 +92,7 @@ struct Robot<F, S> {
     ticks: u16,
     number: u8,
     name: String<24>,
-    arithmetic: Arithmetic,
+    number_type: NumberType,
 }
 
 impl<F: NorFlash, S: Scalar> Robot<F, S> {
@@ -119,7 +119,7 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
             blob_format: FORMAT_VERSION,
             genes: DEFAULT_GENES as u8,
             blob_bytes: MAX_BLOB as u16,
-            arithmetic: self.arithmetic,
+            number_type: self.number_type,
             name: self.name.clone(),
         }
     }

@@ -74,10 +74,15 @@ pub struct SlotStatus {
 
 /// The bytes of a slot that holds this blob, confirmed: for flashing by a programmer instead of through the link.
 ///
+/// Of two slots the robot takes the one with the higher `sequence`; [`u32::MAX`] would leave none for the next upload.
+///
 /// # Errors
-/// [`SlotError::TooLong`], [`SlotError::Blob`].
+/// [`SlotError::TooLong`], [`SlotError::Blob`], [`SlotError::SequenceUsedUp`] for [`u32::MAX`].
 pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }>, SlotError> {
     let identity = Blob::<DEFAULT_GENES>::decode(blob).map_err(SlotError::Blob)?.identity();
+    if sequence == u32::MAX {
+        return Err(SlotError::SequenceUsedUp);
+    }
     let header = Header { length: blob.len() as u32, sequence, identity }.encode();
     let marks = [Mark::Verified, Mark::Activated, Mark::Confirmed].map(Mark::encode);
     let mut image: Vec<u8, { MIN_SLOT as usize }> = Vec::new();
@@ -87,6 +92,12 @@ pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }
     append(&[0xff; UNIT * (MARKS - 3)])?;
     append(blob)?;
     Ok(image)
+}
+
+/// The sequence number of an upload: above that of the slot that is kept, so that the upload is the newer of the two; and
+/// above that of the slot that is erased if there is such a number, so that it counts uploads.
+fn sequence_after(kept: u32, erased: u32) -> Option<u32> {
+    kept.max(erased).checked_add(1).or(kept.checked_add(1))
 }
 
 /// An upload under way.
@@ -175,19 +186,19 @@ impl<F: NorFlash> Slots<F> {
     /// Erases the slot that is not in charge for a blob of `length` bytes.
     ///
     /// # Errors
-    /// [`SlotError::TooLong`], [`SlotError::OnTrial`], or what the flash says.
+    /// [`SlotError::TooLong`], [`SlotError::OnTrial`], [`SlotError::SequenceUsedUp`], or what the flash says.
     pub fn begin(&mut self, length: u32, identity: Identity) -> Result<(), SlotError> {
         if length as usize > MAX_BLOB {
             return Err(SlotError::TooLong);
         }
         let slot = self.active.map_or(0, |active| 1 - active);
         let [first, second] = self.status()?;
-        let other = if slot == 0 { first } else { second };
+        let (other, kept) = if slot == 0 { (first, second) } else { (second, first) };
         let on_trial = self.active_status()?.is_some_and(|status| status.stage == Stage::Trial);
         if on_trial && other.stage == Stage::Confirmed {
             return Err(SlotError::OnTrial);
         }
-        let sequence = first.sequence.max(second.sequence).wrapping_add(1);
+        let sequence = sequence_after(kept.sequence, other.sequence).ok_or(SlotError::SequenceUsedUp)?;
         let header = Header { length, sequence, identity };
         self.upload = None;
         let start = self.start_of(slot);

@@ -19,10 +19,10 @@ impl<B: Brain + ?Sized> Brain for Box<B> {
     }
 }
 
-/// The robot's own controller, unchanged.
+/// The robot's own controller, unchanged. A percept that it refuses ends the run: no robot can have it.
 impl<S: Scalar, const N: usize> Brain for Controller<S, N> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        Ok(Controller::tick(self, percept))
+        Controller::tick(self, percept).map_err(|error| BrainError::new(error.to_string()))
     }
 }
 

@@ -4,7 +4,7 @@ use crate::grid::Grid;
 use crate::random::{Component, Stream};
 use grn_core::geometry::Point;
 use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
-use grn_core::robot::percept::{MAX_HEARD, Percept};
+use grn_core::robot::percept::MAX_HEARD;
 use grn_core::robot::{Message, Millimetres, ObstacleReport, TargetReport};
 use serde::{Deserialize, Serialize};
 
@@ -125,12 +125,12 @@ impl Radio {
         core::mem::swap(&mut self.sent, &mut self.sending);
     }
 
-    /// Puts what `receiver` hears at `position` into its percept: of the messages from senders in range, each lost or not
+    /// What `receiver` hears at `position`: of the messages from senders in range, each lost or not
     /// by an independent draw, as many as the inbox holds, nearest first (equally near ones by number).
-    pub fn deliver(&mut self, receiver: usize, position: Point<f64>, percept: &mut Percept) {
-        percept.heard.clear();
+    pub fn deliver(&mut self, receiver: usize, position: Point<f64>) -> heapless::Vec<Message, MAX_HEARD> {
+        let mut heard = heapless::Vec::new();
         if self.sent.senders.is_empty() {
-            return;
+            return heard;
         }
         let draws = self.losses[receiver].draws();
         let mut nearest = [NOBODY; MAX_HEARD];
@@ -145,8 +145,9 @@ impl Radio {
         });
         for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
             // As many as fit were chosen.
-            let _ = percept.heard.push(self.sent.letters[(rank & 0xff) as usize].message());
+            let _ = heard.push(self.sent.letters[(rank & 0xff) as usize].message());
         }
+        heard
     }
 }
 
@@ -167,9 +168,7 @@ mod tests {
         (0..places.len()).for_each(|sender| radio.send(sender, Some(&message(sender))));
         radio.tick_over();
         radio.locate(&positions);
-        let mut percept = Percept::default();
-        radio.deliver(receiver, positions[receiver], &mut percept);
-        percept.heard.iter().map(|message| message.sender).collect()
+        radio.deliver(receiver, positions[receiver]).iter().map(|message| message.sender).collect()
     }
 
     #[test]
@@ -200,10 +199,9 @@ mod tests {
         radio.locate(&positions);
         let (mut one, mut two, mut both) = (0, 0, 0);
         let n = 20_000;
-        let mut percept = Percept::default();
         for _ in 0..n {
-            radio.deliver(0, positions[0], &mut percept);
-            let has = |s: u8| percept.heard.iter().any(|m| m.sender == s);
+            let heard = radio.deliver(0, positions[0]);
+            let has = |s: u8| heard.iter().any(|m| m.sender == s);
             one += u32::from(has(1));
             two += u32::from(has(2));
             both += u32::from(has(1) && has(2));
@@ -221,11 +219,10 @@ mod tests {
         (0..40).for_each(|sender| radio.send(sender, Some(&message(sender))));
         radio.tick_over();
         radio.locate(&positions);
-        let mut percept = Percept::default();
         for _ in 0..1000 {
-            radio.deliver(0, positions[0], &mut percept);
-            assert_eq!(percept.heard.len(), MAX_HEARD);
-            assert!(percept.heard.windows(2).all(|pair| pair[0].sender < pair[1].sender));
+            let heard = radio.deliver(0, positions[0]);
+            assert_eq!(heard.len(), MAX_HEARD);
+            assert!(heard.windows(2).all(|pair| pair[0].sender < pair[1].sender));
         }
     }
 }

@@ -5,7 +5,9 @@ use crate::geometry::{Edge, length_squared};
 use crate::random::Stream;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_BEARINGS_DEG, PROXIMITY_RANGE, PROXIMITY_SENSORS};
-use grn_core::robot::{Millimetres, Percept, Sighting};
+use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS};
+use grn_core::robot::{Millimetres, Sighting};
+use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Sensor noise: the half-widths of triangular distributions around the truth (the standard deviation is 1/√6 of the
@@ -136,8 +138,8 @@ fn millimetres(point: Point<f64>, half_width: f64, noise: &mut Stream) -> Millim
     Millimetres { x: perceived(point.x), y: perceived(point.y) }
 }
 
-/// Puts own position and heading, as localisation gives them, into the percept.
-pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream, percept: &mut Percept) {
+/// Own position and heading as localisation gives them, in the percept's units.
+pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream) -> ([i32; 2], [i16; 2]) {
     let Pose { mut position, mut heading } = *pose;
     if noise.position_m > 0.0 {
         position = position + Vector::new(stream.triangular(), stream.triangular()) * noise.position_m;
@@ -148,26 +150,33 @@ pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream, percept: &mut P
         let shrink = 1.0 / (1.0 + e * e).sqrt();
         heading = (heading + heading.turned_left() * e) * shrink;
     }
-    percept.position = [micrometres(position.x), micrometres(position.y)];
-    percept.heading = [unit_q14(heading.x), unit_q14(heading.y)];
+    ([micrometres(position.x), micrometres(position.y)], [unit_q14(heading.x), unit_q14(heading.y)])
+}
+
+/// What a robot sees with its own far sense in one tick.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Targets.
+    pub targets: Vec<Sighting, MAX_TARGETS>,
+    /// Points on walls.
+    pub obstacles: Vec<Millimetres, MAX_SEEN_OBSTACLES>,
 }
 
 /// A mother robot's far sense: targets and samples of the walls' outlines within range, through walls. Wall points come
 /// a few per tick: all those in range, nearest first, and then again from the nearest.
 #[derive(Debug, Default)]
 pub struct FarSense {
-    queue: Vec<(f64, u32)>,
+    queue: std::vec::Vec<(f64, u32)>,
     next: usize,
 }
 
 impl FarSense {
     /// A far sense with room for this many wall samples.
     pub fn new(samples: usize) -> Self {
-        FarSense { queue: Vec::with_capacity(samples), next: 0 }
+        FarSense { queue: std::vec::Vec::with_capacity(samples), next: 0 }
     }
 
-    /// Puts what is seen from `position` within `range` metres into the percept.
-    #[allow(clippy::too_many_arguments)]
+    /// What is seen from `position` within `range` metres.
     pub fn look(
         &mut self,
         position: Point<f64>,
@@ -176,14 +185,14 @@ impl FarSense {
         samples: &[Point<f64>],
         noise: &Noise,
         stream: &mut Stream,
-        percept: &mut Percept,
-    ) {
+    ) -> Seen {
+        let mut look = Seen::default();
         let limit = range * range;
         for (number, &target) in (0u8..).zip(targets) {
             if length_squared(target - position) <= limit {
                 let seen = Sighting { target: number, position: millimetres(target, noise.sighting_m, stream) };
                 // A scenario has no more targets than a percept has room for.
-                let _ = percept.targets.push(seen);
+                let _ = look.targets.push(seen);
             }
         }
         if self.next >= self.queue.len() {
@@ -194,11 +203,12 @@ impl FarSense {
             self.queue.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
         while let Some(&(_, index)) = self.queue.get(self.next)
-            && !percept.obstacles.is_full()
+            && !look.obstacles.is_full()
         {
-            let _ = percept.obstacles.push(millimetres(samples[index as usize], noise.sighting_m, stream));
+            let _ = look.obstacles.push(millimetres(samples[index as usize], noise.sighting_m, stream));
             self.next += 1;
         }
+        look
     }
 }
 
@@ -206,7 +216,7 @@ impl FarSense {
 mod tests {
     use super::*;
     use crate::random::Component;
-    use grn_core::robot::percept::MAX_SEEN_OBSTACLES;
+    use std::vec::Vec;
 
     const POSE: Pose = Pose { position: Vector::new(1.0, 2.0), heading: Vector::new(0.0, 1.0) };
 
@@ -282,14 +292,12 @@ mod tests {
 
     #[test]
     fn localisation_is_exact_without_noise_and_near_with_it() {
-        let mut percept = Percept::default();
-        localise(&POSE, &Noise::NONE, &mut stream(), &mut percept);
-        assert_eq!((percept.position, percept.heading), ([1_000_000, 2_000_000], [0, 16384]));
+        assert_eq!(localise(&POSE, &Noise::NONE, &mut stream()), ([1_000_000, 2_000_000], [0, 16384]));
         let mut noise = stream();
         for _ in 0..1000 {
-            localise(&POSE, &Noise::default(), &mut noise, &mut percept);
-            assert!((percept.position[0] - 1_000_000).abs() <= 2000 && percept.heading[0].abs() <= 286);
-            let [x, y] = percept.heading.map(f64::from);
+            let (position, heading) = localise(&POSE, &Noise::default(), &mut noise);
+            assert!((position[0] - 1_000_000).abs() <= 2000 && heading[0].abs() <= 286);
+            let [x, y] = heading.map(f64::from);
             assert!((libm::hypot(x, y) - 16384.0).abs() < 1.5);
         }
     }
@@ -300,20 +308,15 @@ mod tests {
         let samples: Vec<Point<f64>> = (0..40).map(|i| Vector::new(1.0 + f64::from(i) * 0.25, 3.0)).collect();
         let mut sense = FarSense::new(samples.len());
         let mut seen = Vec::new();
-        let mut percept = Percept::default();
         for tick in 0..6 {
-            percept = Percept::default();
-            sense.look(POSE.position, 5.0, &targets, &samples, &Noise::NONE, &mut stream(), &mut percept);
-            assert_eq!(
-                percept.targets.as_slice(),
-                [Sighting { target: 0, position: Millimetres { x: 3000, y: 2000 } }]
-            );
-            assert_eq!(percept.obstacles.len(), if tick % 3 == 2 { 4 } else { MAX_SEEN_OBSTACLES });
-            seen.extend(percept.obstacles.iter().map(|p| p.x));
+            let look = sense.look(POSE.position, 5.0, &targets, &samples, &Noise::NONE, &mut stream());
+            assert_eq!(look.targets.as_slice(), [Sighting { target: 0, position: Millimetres { x: 3000, y: 2000 } }]);
+            assert_eq!(look.obstacles.len(), if tick % 3 == 2 { 4 } else { MAX_SEEN_OBSTACLES });
+            assert!(look.obstacles.iter().all(|point| point.y == 3000));
+            seen.extend(look.obstacles.iter().map(|point| point.x));
         }
         // √24 m to the side: 20 of the samples are in range, each seen once a round.
         let round: Vec<i16> = (0..20).map(|i| 1000 + i * 250).collect();
         assert_eq!((&seen[..20], &seen[20..]), (&round[..], &round[..]));
-        assert_eq!(percept.obstacles[0], Millimetres { x: 5000, y: 3000 });
     }
 }

@@ -16,7 +16,7 @@ use crate::radio::Radio;
 use crate::random::{Component, Stream};
 use crate::scenario::{PERCEPTION_RANGE, Scenario};
 use crate::sensors::{
-    ALL_FREE, FarSense, FreeDistances, ProximityRing, ROBOT_REACH, WALL_REACH, localise, micrometres, unit_q14,
+    ALL_FREE, FarSense, FreeDistances, ProximityRing, ROBOT_REACH, Seen, WALL_REACH, localise, micrometres, unit_q14,
 };
 use crate::trace::{RobotState, Trace, TraceHeader};
 use core::fmt;
@@ -89,7 +89,6 @@ pub struct Swarm<B> {
     radio: Radio,
     contacts: Contacts,
     targets: Vec<Point<f64>>,
-    percept: Percept,
     tick: u64,
     trace: Trace,
 }
@@ -168,7 +167,6 @@ impl<B: Brain> Swarm<B> {
             radio: Radio::new(config.radio, config.seed, n),
             contacts: Contacts::new(n),
             targets: world.targets_at(0.0),
-            percept: Percept::default(),
             tick: 0,
             trace: Trace::new(header),
             world,
@@ -307,18 +305,15 @@ impl<B: Brain> Swarm<B> {
     /// One robot's percept and its brain's answer.
     fn think(&mut self, robot: usize) -> Result<(), StepError> {
         let (pose, noise, stream) = (&self.poses[robot], &self.config.noise, &mut self.noise[robot]);
-        let percept = &mut self.percept;
-        localise(pose, noise, stream, percept);
-        percept.proximity = ProximityRing::quantised(&self.free[robot], noise.proximity_m, stream);
-        percept.targets.clear();
-        percept.obstacles.clear();
-        if let Some(sense) = self.far_senses.get_mut(robot) {
-            let range = PERCEPTION_RANGE * self.config.scale;
-            sense.look(pose.position, range, &self.targets, &self.samples, noise, stream, percept);
-        }
-        self.radio.deliver(robot, pose.position, percept);
+        let (position, heading) = localise(pose, noise, stream);
+        let proximity = ProximityRing::quantised(&self.free[robot], noise.proximity_m, stream);
+        let range = PERCEPTION_RANGE * self.config.scale;
+        let look = |sense: &mut FarSense| sense.look(pose.position, range, &self.targets, &self.samples, noise, stream);
+        let Seen { targets, obstacles } = self.far_senses.get_mut(robot).map(look).unwrap_or_default();
+        let heard = self.radio.deliver(robot, pose.position);
+        let percept = Percept { position, heading, proximity, targets, obstacles, heard };
         let fault = |source| StepError { robot, tick: self.tick, source };
-        let command = self.brains[robot].tick(percept).map_err(fault)?;
+        let command = self.brains[robot].tick(&percept).map_err(fault)?;
         self.wheels[robot] = [command.left, command.right].map(|s| s.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
         self.radio.send(robot, command.broadcast.as_ref());
         Ok(())

@@ -268,4 +268,33 @@ mod tests {
         drop(open);
         assert!(port.open(115_200, LIMIT).is_ok());
     }
+
+    /// A host that answers nothing looks like this from outside: connections stay in a queue that is full.
+    #[test]
+    fn a_silent_host_is_given_up_after_the_limit() {
+        const SHORT: Duration = Duration::from_millis(300);
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        rustix::net::listen(&listener, 0).unwrap();
+        let address = listener.local_addr().unwrap();
+        let queued = std::iter::from_fn(|| TcpStream::connect_timeout(&address, Duration::from_millis(100)).ok());
+        let _queued: Vec<_> = queued.take(9).collect();
+        let port = Port::Tcp { host: "127.0.0.1".into(), number: address.port() };
+        let begun = Instant::now();
+        let error = port.open(0, SHORT).map(|_| ()).unwrap_err();
+        assert!(matches!(error, OpenError::TimedOut { after: SHORT }), "{error}");
+        assert_eq!(error.to_string(), "no connection within 0.3 s");
+        assert!(begun.elapsed() < 10 * SHORT, "{:?}", begun.elapsed());
+    }
+
+    #[test]
+    fn a_full_unix_socket_is_given_up_after_the_limit() {
+        const SHORT: Duration = Duration::from_millis(300);
+        let path = std::env::temp_dir().join(format!("grn-link-full-{}", std::process::id()));
+        let listener = UnixListener::bind(&path).unwrap();
+        rustix::net::listen(&listener, 0).unwrap();
+        let port = Port::Unix(path.to_str().unwrap().into());
+        let opened: Vec<_> = (0..4).map(|_| port.open(0, SHORT)).collect();
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(opened.last(), Some(Err(OpenError::TimedOut { .. }))));
+    }
 }

@@ -45,7 +45,7 @@ struct Real<S>(Controller<S>);
 
 impl<S: Scalar> Brain for Real<S> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        Ok(self.0.tick(percept))
+        Brain::tick(&mut self.0, percept)
     }
 }
 

@@ -6,6 +6,7 @@
 //     GrnStatus status = grn_load(&controller, sizeof controller, blob, length, GRN_NUMBER_F32, robot);
 //     if (status != GRN_STATUS_OK) puts(grn_status_text(status));
 //     ...
+//     GrnPercept percept = GRN_PERCEPT_NOTHING;             // then what the robot perceives
 //     status = grn_tick(&controller, &percept, &command);   // every 1/32 s; then set the wheels to command
 //
 // The library allocates nothing and keeps no state of its own; equal blobs and percepts give equal commands, bit for bit,
@@ -13,13 +14,21 @@
 // to a whole object, which nobody else uses during the call: one controller is for one thread at a time, while different
 // controllers know nothing of each other.
 //
-// The world is right-handed, x east, y north.
+// The world is right-handed, x east, y north. docs/units.md converts units.
 
 #ifndef GRN_H
 #define GRN_H
 
 #include <stddef.h>
 #include <stdint.h>
+
+// The version of this header; grn_version says that of the library. Before 1.0.0 minor versions are not compatible
+// with each other.
+#define GRN_VERSION_MAJOR 0
+#define GRN_VERSION_MINOR 1
+#define GRN_VERSION_PATCH 0
+#define GRN_VERSION_STRING "0.1.0"
+
 
 // The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
 #define GRN_CONTROLLER_WORDS 255
@@ -71,6 +80,10 @@ enum GrnStatus
     GRN_STATUS_TOO_MANY_HEARD = 12,
     // A message counts more than GRN_MAX_REPORTED_OBSTACLES obstacle points.
     GRN_STATUS_TOO_MANY_REPORTED = 13,
+    // The percept's heading is not a unit vector: its length is not 16384, give or take a 32nd.
+    GRN_STATUS_HEADING = 14,
+    // The percept's position is farther from the origin than 32767000 micrometres, east or north.
+    GRN_STATUS_POSITION = 15,
     // The bytes end before the blob's header does.
     GRN_STATUS_BLOB_TRUNCATED = 20,
     // The bytes do not begin as a blob does.
@@ -89,8 +102,10 @@ enum GrnStatus
     GRN_STATUS_BLOB_MALFORMED = 27,
     // The blob's network has more genes than this build holds.
     GRN_STATUS_NETWORK_TOO_LARGE = 28,
-    // A gene, a code or a parameter in the blob is out of its range.
+    // A gene's input or a parameter in the blob is out of its range.
     GRN_STATUS_BLOB_OUT_OF_RANGE = 29,
+    // The blob has a motif or kernel that this library does not know.
+    GRN_STATUS_BLOB_UNKNOWN_CODE = 30,
     // The model does not tell targets from empty space.
     GRN_STATUS_NO_PATTERN = 40,
     // The model's pattern does not close around a lone target.
@@ -148,6 +163,8 @@ typedef struct GrnMillimetres {
 typedef struct GrnSighting {
     // Which target: targets can be told apart.
     uint8_t target;
+    // 0; not read.
+    uint8_t reserved;
     // Where it is.
     struct GrnMillimetres position;
 } GrnSighting;
@@ -156,12 +173,16 @@ typedef struct GrnSighting {
 typedef struct GrnTargetReport {
     // Which target.
     uint8_t target;
+    // 0; not read.
+    uint8_t reserved0;
     // Where the sender expects it at the time of sending.
     struct GrnMillimetres position;
     // Its velocity, millimetres per second: east, north.
     int8_t velocity[2];
     // Ticks since it was seen, over all relays; 255 means at least that.
     uint8_t age;
+    // 0; not read.
+    uint8_t reserved1;
 } GrnTargetReport;
 
 // An obstacle point as somebody knows it.
@@ -170,47 +191,67 @@ typedef struct GrnObstacleReport {
     struct GrnMillimetres position;
     // Units of 8 ticks since it was seen, over all relays; 255 means at least that.
     uint8_t age;
+    // 0; not read.
+    uint8_t reserved;
 } GrnObstacleReport;
 
 // What robots tell each other by radio: who and where I am, and some of what I know.
 //
-// The layout is the same on all machines of equal byte order, so the bytes may be sent as they are.
+// To be sent, use grn_message_write, whose bytes are fewer, the same on all machines, and protected by a checksum.
 typedef struct GrnMessage {
     // Number of the robot that sends, unique in the swarm.
     uint8_t sender;
+    // 0; not read.
+    uint8_t reserved0;
     // Where it is.
     struct GrnMillimetres position;
     // 0 if it tells of no target; then "target" is not read.
     uint8_t has_target;
+    // 0; not read.
+    uint8_t reserved1;
     // One of the targets it knows, in turn.
     struct GrnTargetReport target;
     // How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
     uint8_t obstacle_count;
+    // 0; not read.
+    uint8_t reserved2;
     // Some of the obstacle points it knows, in turn.
     struct GrnObstacleReport obstacles[GRN_MAX_REPORTED_OBSTACLES];
 } GrnMessage;
 
 // Everything a robot perceives in one tick.
+//
+// Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
+// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because zeros are no heading.
 typedef struct GrnPercept {
-    // Own position in the world, micrometres: east, north.
+    // Own position in the world, micrometres: east, north; each within 32767000 either way.
     int32_t position[2];
-    // Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north.
+    // Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north. The
+    // length of this vector may be a 32nd off 16384, that is from 15872 to 16896.
     int16_t heading[2];
     // Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
     // nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
     uint16_t proximity[GRN_PROXIMITY_SENSORS];
     // How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
     uint8_t target_count;
+    // 0; not read.
+    uint8_t reserved0;
     // Targets seen with own sensors (mother robots).
     struct GrnSighting targets[GRN_MAX_TARGETS];
     // How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
     uint8_t obstacle_count;
+    // 0; not read.
+    uint8_t reserved1;
     // Points on obstacles seen with own sensors (mother robots).
     struct GrnMillimetres obstacles[GRN_MAX_SEEN_OBSTACLES];
     // How many of "heard" there are, from 0 to GRN_MAX_HEARD.
     uint8_t heard_count;
+    // 0; not read.
+    uint8_t reserved2;
     // Messages received since the last tick; of more, the strongest.
     struct GrnMessage heard[GRN_MAX_HEARD];
+    // 0; not read.
+    uint8_t reserved3[2];
 } GrnPercept;
 
 // What a robot does until the next tick.
@@ -221,6 +262,8 @@ typedef struct GrnCommand {
     int16_t right;
     // 1 if there is a message to broadcast in this tick, else 0.
     uint8_t has_broadcast;
+    // 0.
+    uint8_t reserved;
     // The message; all zero without one.
     struct GrnMessage broadcast;
 } GrnCommand;
@@ -253,6 +296,11 @@ GrnStatus grn_load(struct GrnController *controller,
 // Takes about as much stack as grn_load.
 GrnStatus grn_check(const uint8_t *blob, size_t length, int32_t number);
 
+// The percept of a robot at the origin that looks east and perceives nothing around it: what GRN_PERCEPT_NOTHING is.
+//
+// `percept`: receives it; then put in what is perceived.
+GrnStatus grn_percept_nothing(struct GrnPercept *percept);
+
 // One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second.
 //
 // `percept`: what the robot perceives; entries beyond a count are not read.
@@ -262,11 +310,12 @@ GrnStatus grn_check(const uint8_t *blob, size_t length, int32_t number);
 // stops the wheels and sends nothing.
 GrnStatus grn_tick(struct GrnController *controller, const struct GrnPercept *percept, struct GrnCommand *command);
 
-// The level of the pattern morphogen M at the robot, as its genes express it now: a number from 0 to 1, 0 before the
-// first target is known.
+// The level of the pattern morphogen M at the robot, as its genes express it now: 0 before the first target is known, then
+// about 0 to 1. A last gene XNOR may take it a little below 0, a last gene XOR a little above 1.
 //
 // `morphogen`: receives it, without loss for both number types.
-GrnStatus grn_morphogen(const struct GrnController *controller, float *morphogen);
+GrnStatus grn_morphogen(const struct GrnController *controller,
+                        float *morphogen);
 
 // The identity of the blob that runs: the first 8 bytes of the SHA-256 of its payload, which `grn show` prints.
 //
@@ -287,5 +336,78 @@ uint8_t grn_blob_format_version(void);
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
+
+// A percept in which nothing is perceived, by a robot at the origin that looks east. To begin every tick with:
+//
+//     GrnPercept percept = GRN_PERCEPT_NOTHING;
+#ifdef __cplusplus
+#define GRN_NO_ENTRIES {}
+#else
+#define GRN_NO_ENTRIES {{0}}
+#endif
+#define GRN_PERCEPT_NOTHING \
+    {{0, 0}, {16384, 0}, \
+     {UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX}, \
+     0, 0, GRN_NO_ENTRIES, 0, 0, GRN_NO_ENTRIES, 0, 0, GRN_NO_ENTRIES, {0, 0}}
+
+// The compiler lays out all structures as the library does. Checked from C11 and C++11 on.
+#if defined(__cplusplus) && __cplusplus >= 201103L
+#define GRN_ASSERT_LAYOUT(condition) static_assert(condition, "grn.h does not fit this compiler or its options")
+#elif !defined(__cplusplus) && defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
+#define GRN_ASSERT_LAYOUT(condition) _Static_assert(condition, "grn.h does not fit this compiler or its options")
+#endif
+#ifdef GRN_ASSERT_LAYOUT
+GRN_ASSERT_LAYOUT(sizeof(GrnController) == 2048);
+GRN_ASSERT_LAYOUT(sizeof(GrnStatus) == 4 && sizeof(GrnNumber) == 4);
+GRN_ASSERT_LAYOUT(sizeof(GrnMillimetres) == 4);
+GRN_ASSERT_LAYOUT(offsetof(GrnMillimetres, x) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnMillimetres, y) == 2);
+GRN_ASSERT_LAYOUT(sizeof(GrnSighting) == 6);
+GRN_ASSERT_LAYOUT(offsetof(GrnSighting, target) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnSighting, reserved) == 1);
+GRN_ASSERT_LAYOUT(offsetof(GrnSighting, position) == 2);
+GRN_ASSERT_LAYOUT(sizeof(GrnTargetReport) == 10);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, target) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, reserved0) == 1);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, position) == 2);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, velocity) == 6);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, age) == 8);
+GRN_ASSERT_LAYOUT(offsetof(GrnTargetReport, reserved1) == 9);
+GRN_ASSERT_LAYOUT(sizeof(GrnObstacleReport) == 6);
+GRN_ASSERT_LAYOUT(offsetof(GrnObstacleReport, position) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnObstacleReport, age) == 4);
+GRN_ASSERT_LAYOUT(offsetof(GrnObstacleReport, reserved) == 5);
+GRN_ASSERT_LAYOUT(sizeof(GrnMessage) == 44);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, sender) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved0) == 1);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, position) == 2);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, has_target) == 6);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved1) == 7);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, target) == 8);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, obstacle_count) == 18);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved2) == 19);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, obstacles) == 20);
+GRN_ASSERT_LAYOUT(sizeof(GrnPercept) == 444);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, position) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heading) == 8);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, proximity) == 12);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, target_count) == 28);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved0) == 29);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, targets) == 30);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacle_count) == 54);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved1) == 55);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacles) == 56);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard_count) == 88);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved2) == 89);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard) == 90);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved3) == 442);
+GRN_ASSERT_LAYOUT(sizeof(GrnCommand) == 50);
+GRN_ASSERT_LAYOUT(offsetof(GrnCommand, left) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnCommand, right) == 2);
+GRN_ASSERT_LAYOUT(offsetof(GrnCommand, has_broadcast) == 4);
+GRN_ASSERT_LAYOUT(offsetof(GrnCommand, reserved) == 5);
+GRN_ASSERT_LAYOUT(offsetof(GrnCommand, broadcast) == 6);
+#undef GRN_ASSERT_LAYOUT
+#endif
 
 #endif  /* GRN_H */

@@ -15,6 +15,8 @@
 #[cfg(not(target_os = "none"))]
 extern crate std;
 
+#[doc(hidden)]
+pub mod layout;
 mod message;
 mod pointer;
 mod status;
@@ -80,6 +82,15 @@ pub unsafe extern "C" fn grn_check(blob: *const u8, length: usize, number: i32) 
     })
 }
 
+/// The percept of a robot at the origin that looks east and perceives nothing around it: what GRN_PERCEPT_NOTHING is.
+///
+/// `percept`: receives it; then put in what is perceived.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn grn_percept_nothing(percept: *mut GrnPercept) -> GrnStatus {
+    // SAFETY: the caller gives null or a pointer to a percept that nobody else uses now.
+    GrnStatus::of(|| unsafe { write(percept, GrnPercept::nothing()) })
+}
+
 /// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second.
 ///
 /// `percept`: what the robot perceives; entries beyond a count are not read.
@@ -100,7 +111,7 @@ pub unsafe extern "C" fn grn_tick(
         let controller = unsafe { exclusive(controller) }?;
         // SAFETY: the caller gives null or a pointer to a percept that nobody writes now.
         let percept = unsafe { shared(percept) }?;
-        let mut perceived = Percept::default();
+        let mut perceived = Percept::nothing();
         percept.tell(&mut perceived)?;
         let answer = controller.tick(&perceived)?.into();
         // SAFETY: as above.
@@ -108,8 +119,8 @@ pub unsafe extern "C" fn grn_tick(
     })
 }
 
-/// The level of the pattern morphogen M at the robot, as its genes express it now: a number from 0 to 1, 0 before the
-/// first target is known.
+/// The level of the pattern morphogen M at the robot, as its genes express it now: 0 before the first target is known, then
+/// about 0 to 1. A last gene XNOR may take it a little below 0, a last gene XOR a little above 1.
 ///
 /// `morphogen`: receives it, without loss for both number types.
 #[unsafe(no_mangle)]

@@ -3,6 +3,7 @@
 use crate::status::GrnStatus;
 use grn_core::robot::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
 use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
+use grn_core::robot::percept::HEADING_UNIT;
 use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS};
 use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 use heapless::Vec;
@@ -30,6 +31,9 @@ const _: () = assert!(GRN_MAX_SEEN_OBSTACLES == MAX_SEEN_OBSTACLES);
 const _: () = assert!(GRN_MAX_HEARD == MAX_HEARD);
 const _: () = assert!(GRN_MAX_REPORTED_OBSTACLES == MAX_REPORTED_OBSTACLES);
 
+// No structure has padding: what would be padding is named `reserved`, so that every byte is written and the bytes of a
+// structure can be compared, kept and sent. `layout.rs` holds sizes and offsets.
+
 /// A position in the world, millimetres, within 32767 either way.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +50,8 @@ pub struct GrnMillimetres {
 pub struct GrnSighting {
     /// Which target: targets can be told apart.
     pub target: u8,
+    /// 0; not read.
+    pub reserved: u8,
     /// Where it is.
     pub position: GrnMillimetres,
 }
@@ -56,12 +62,16 @@ pub struct GrnSighting {
 pub struct GrnTargetReport {
     /// Which target.
     pub target: u8,
+    /// 0; not read.
+    pub reserved0: u8,
     /// Where the sender expects it at the time of sending.
     pub position: GrnMillimetres,
     /// Its velocity, millimetres per second: east, north.
     pub velocity: [i8; 2],
     /// Ticks since it was seen, over all relays; 255 means at least that.
     pub age: u8,
+    /// 0; not read.
+    pub reserved1: u8,
 }
 
 /// An obstacle point as somebody knows it.
@@ -72,51 +82,71 @@ pub struct GrnObstacleReport {
     pub position: GrnMillimetres,
     /// Units of 8 ticks since it was seen, over all relays; 255 means at least that.
     pub age: u8,
+    /// 0; not read.
+    pub reserved: u8,
 }
 
 /// What robots tell each other by radio: who and where I am, and some of what I know.
 ///
-/// The layout is the same on all machines of equal byte order, so the bytes may be sent as they are.
+/// To be sent, use grn_message_write, whose bytes are fewer, the same on all machines, and protected by a checksum.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GrnMessage {
     /// Number of the robot that sends, unique in the swarm.
     pub sender: u8,
+    /// 0; not read.
+    pub reserved0: u8,
     /// Where it is.
     pub position: GrnMillimetres,
     /// 0 if it tells of no target; then "target" is not read.
     pub has_target: u8,
+    /// 0; not read.
+    pub reserved1: u8,
     /// One of the targets it knows, in turn.
     pub target: GrnTargetReport,
     /// How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
     pub obstacle_count: u8,
+    /// 0; not read.
+    pub reserved2: u8,
     /// Some of the obstacle points it knows, in turn.
     pub obstacles: [GrnObstacleReport; GRN_MAX_REPORTED_OBSTACLES],
 }
 
 /// Everything a robot perceives in one tick.
+///
+/// Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
+/// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because zeros are no heading.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GrnPercept {
-    /// Own position in the world, micrometres: east, north.
+    /// Own position in the world, micrometres: east, north; each within 32767000 either way.
     pub position: [i32; 2],
-    /// Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north.
+    /// Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north. The
+    /// length of this vector may be a 32nd off 16384, that is from 15872 to 16896.
     pub heading: [i16; 2],
     /// Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
     /// nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
     pub proximity: [u16; GRN_PROXIMITY_SENSORS],
     /// How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
     pub target_count: u8,
+    /// 0; not read.
+    pub reserved0: u8,
     /// Targets seen with own sensors (mother robots).
     pub targets: [GrnSighting; GRN_MAX_TARGETS],
     /// How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
     pub obstacle_count: u8,
+    /// 0; not read.
+    pub reserved1: u8,
     /// Points on obstacles seen with own sensors (mother robots).
     pub obstacles: [GrnMillimetres; GRN_MAX_SEEN_OBSTACLES],
     /// How many of "heard" there are, from 0 to GRN_MAX_HEARD.
     pub heard_count: u8,
+    /// 0; not read.
+    pub reserved2: u8,
     /// Messages received since the last tick; of more, the strongest.
     pub heard: [GrnMessage; GRN_MAX_HEARD],
+    /// 0; not read.
+    pub reserved3: [u8; 2],
 }
 
 /// What a robot does until the next tick.
@@ -129,6 +159,8 @@ pub struct GrnCommand {
     pub right: i16,
     /// 1 if there is a message to broadcast in this tick, else 0.
     pub has_broadcast: u8,
+    /// 0.
+    pub reserved: u8,
     /// The message; all zero without one.
     pub broadcast: GrnMessage,
 }
@@ -146,32 +178,33 @@ impl From<Millimetres> for GrnMillimetres {
 }
 
 impl From<GrnSighting> for Sighting {
-    fn from(GrnSighting { target, position }: GrnSighting) -> Self {
+    fn from(GrnSighting { target, position, reserved: _ }: GrnSighting) -> Self {
         Sighting { target, position: position.into() }
     }
 }
 
 impl From<GrnTargetReport> for TargetReport {
-    fn from(GrnTargetReport { target, position, velocity, age }: GrnTargetReport) -> Self {
+    fn from(report: GrnTargetReport) -> Self {
+        let GrnTargetReport { target, reserved0: _, position, velocity, age, reserved1: _ } = report;
         TargetReport { target, position: position.into(), velocity, age }
     }
 }
 
 impl From<TargetReport> for GrnTargetReport {
     fn from(TargetReport { target, position, velocity, age }: TargetReport) -> Self {
-        GrnTargetReport { target, position: position.into(), velocity, age }
+        GrnTargetReport { target, reserved0: 0, position: position.into(), velocity, age, reserved1: 0 }
     }
 }
 
 impl From<GrnObstacleReport> for ObstacleReport {
-    fn from(GrnObstacleReport { position, age }: GrnObstacleReport) -> Self {
+    fn from(GrnObstacleReport { position, age, reserved: _ }: GrnObstacleReport) -> Self {
         ObstacleReport { position: position.into(), age }
     }
 }
 
 impl From<ObstacleReport> for GrnObstacleReport {
     fn from(ObstacleReport { position, age }: ObstacleReport) -> Self {
-        GrnObstacleReport { position: position.into(), age }
+        GrnObstacleReport { position: position.into(), age, reserved: 0 }
     }
 }
 
@@ -200,35 +233,56 @@ impl From<Message> for GrnMessage {
         }
         GrnMessage {
             sender: message.sender,
+            reserved0: 0,
             position: message.position.into(),
             has_target: message.target.is_some().into(),
+            reserved1: 0,
             target: message.target.map(Into::into).unwrap_or_default(),
             obstacle_count: message.obstacles.len() as u8,
+            reserved2: 0,
             obstacles,
         }
     }
 }
 
 impl GrnPercept {
-    /// Fills in an empty percept, in place: on the chip's stack it is large.
+    /// What GRN_PERCEPT_NOTHING is in C.
+    pub fn nothing() -> Self {
+        GrnPercept {
+            position: [0; 2],
+            heading: [HEADING_UNIT, 0],
+            proximity: [u16::MAX; GRN_PROXIMITY_SENSORS],
+            target_count: 0,
+            reserved0: 0,
+            targets: [GrnSighting::default(); GRN_MAX_TARGETS],
+            obstacle_count: 0,
+            reserved1: 0,
+            obstacles: [GrnMillimetres::default(); GRN_MAX_SEEN_OBSTACLES],
+            heard_count: 0,
+            reserved2: 0,
+            heard: [GrnMessage::default(); GRN_MAX_HEARD],
+            reserved3: [0; 2],
+        }
+    }
+
+    /// Puts it into a percept in which nothing is perceived, in place: on the chip's stack it is large.
     pub(crate) fn tell(&self, percept: &mut Percept) -> Result<(), GrnStatus> {
-        percept.position = self.position;
-        percept.heading = self.heading;
-        percept.proximity = self.proximity;
-        fill(&mut percept.targets, &self.targets, self.target_count, GrnStatus::TooManyTargets, |&sighting| {
-            Ok(sighting.into())
-        })?;
-        fill(&mut percept.obstacles, &self.obstacles, self.obstacle_count, GrnStatus::TooManyObstacles, |&point| {
-            Ok(point.into())
-        })?;
-        fill(&mut percept.heard, &self.heard, self.heard_count, GrnStatus::TooManyHeard, |message| message.try_into())
+        // By name, so that a field that a percept gets is missed here.
+        let Percept { position, heading, proximity, targets, obstacles, heard } = percept;
+        *position = self.position;
+        *heading = self.heading;
+        *proximity = self.proximity;
+        fill(targets, &self.targets, self.target_count, GrnStatus::TooManyTargets, |&sighting| Ok(sighting.into()))?;
+        fill(obstacles, &self.obstacles, self.obstacle_count, GrnStatus::TooManyObstacles, |&point| Ok(point.into()))?;
+        fill(heard, &self.heard, self.heard_count, GrnStatus::TooManyHeard, |message| message.try_into())
     }
 }
 
 impl From<Command> for GrnCommand {
     fn from(Command { left, right, broadcast }: Command) -> Self {
         let has_broadcast = broadcast.is_some().into();
-        GrnCommand { left, right, has_broadcast, broadcast: broadcast.map(Into::into).unwrap_or_default() }
+        let broadcast = broadcast.map(Into::into).unwrap_or_default();
+        GrnCommand { left, right, has_broadcast, reserved: 0, broadcast }
     }
 }
 

@@ -3,7 +3,7 @@
 use core::ffi::CStr;
 use grn_core::blob::{BlobError, FORMAT_VERSION};
 use grn_core::network::NetworkError;
-use grn_core::robot::LoadError;
+use grn_core::robot::{LoadError, PerceptError};
 
 /// What became of a call. The numbers of released statuses never change; grn_status_text says what to do.
 #[repr(i32)]
@@ -30,6 +30,10 @@ pub enum GrnStatus {
     TooManyHeard = 12,
     /// A message counts more than GRN_MAX_REPORTED_OBSTACLES obstacle points.
     TooManyReported = 13,
+    /// The percept's heading is not a unit vector: its length is not 16384, give or take a 32nd.
+    Heading = 14,
+    /// The percept's position is farther from the origin than 32767000 micrometres, east or north.
+    Position = 15,
     /// The bytes end before the blob's header does.
     BlobTruncated = 20,
     /// The bytes do not begin as a blob does.
@@ -48,8 +52,10 @@ pub enum GrnStatus {
     BlobMalformed = 27,
     /// The blob's network has more genes than this build holds.
     NetworkTooLarge = 28,
-    /// A gene, a code or a parameter in the blob is out of its range.
+    /// A gene's input or a parameter in the blob is out of its range.
     BlobOutOfRange = 29,
+    /// The blob has a motif or kernel that this library does not know.
+    BlobUnknownCode = 30,
     /// The model does not tell targets from empty space.
     NoPattern = 40,
     /// The model's pattern does not close around a lone target.
@@ -59,7 +65,7 @@ pub enum GrnStatus {
 }
 
 impl GrnStatus {
-    const TEXTS: [(Self, &CStr); 23] = [
+    const TEXTS: [(Self, &CStr); 26] = [
         (Self::Ok, c"done"),
         (Self::NullPointer, c"a pointer is null: pass the address of an object"),
         (
@@ -78,6 +84,14 @@ impl GrnStatus {
         (
             Self::TooManyReported,
             c"a message has more than GRN_MAX_REPORTED_OBSTACLES obstacle points: drop it, it is damaged",
+        ),
+        (
+            Self::Heading,
+            c"the heading is not a unit vector: give its cosine and sine times 16384; begin with GRN_PERCEPT_NOTHING",
+        ),
+        (
+            Self::Position,
+            c"the position is out of range: give micrometres, within 32767000 of the origin in both directions",
         ),
         (Self::BlobTruncated, c"the blob is cut short: copy or upload it again"),
         (Self::NotABlob, c"not a GRN blob, it does not begin with \"GRNb\": pass a file that grn evolve wrote"),
@@ -98,6 +112,7 @@ impl GrnStatus {
             Self::BlobOutOfRange,
             c"a gene or a parameter in the blob is out of range: grn show names it; write the blob again",
         ),
+        (Self::BlobUnknownCode, c"the blob has a motif or kernel that this library does not know: update this library"),
         (Self::NoPattern, c"the model does not tell targets from empty space: evolve another one"),
         (Self::NoRing, c"the model's pattern does not close around a lone target: evolve another one"),
         (
@@ -129,13 +144,19 @@ impl From<BlobError> for GrnStatus {
             BlobError::Crc { .. } | BlobError::Identity => Self::BlobDamaged,
             BlobError::Convention(_) => Self::BlobConvention,
             BlobError::Network(NetworkError::TooManyGenes { .. }) => Self::NetworkTooLarge,
-            BlobError::Opcode { .. }
-            | BlobError::Kernel(_)
-            | BlobError::Step(_)
-            | BlobError::Network(_)
-            | BlobError::Parameter { .. } => Self::BlobOutOfRange,
+            BlobError::Opcode { .. } | BlobError::Kernel(_) => Self::BlobUnknownCode,
+            BlobError::Step(_) | BlobError::Network(_) | BlobError::Parameter { .. } => Self::BlobOutOfRange,
             // Malformed, not canonical, and faults that later versions of the core may name.
             _ => Self::BlobMalformed,
+        }
+    }
+}
+
+impl From<PerceptError> for GrnStatus {
+    fn from(error: PerceptError) -> Self {
+        match error {
+            PerceptError::Position { .. } => Self::Position,
+            PerceptError::Heading { .. } => Self::Heading,
         }
     }
 }

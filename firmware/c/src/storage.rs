@@ -87,9 +87,9 @@ impl GrnController {
 
     pub(crate) fn tick(&mut self, percept: &Percept) -> Result<Command, GrnStatus> {
         if let Some(controller) = self.get_mut::<f32>() {
-            Ok(tick(controller, percept))
+            tick(controller, percept)
         } else if let Some(controller) = self.get_mut::<Q8_24>() {
-            Ok(tick(controller, percept))
+            tick(controller, percept)
         } else {
             Err(GrnStatus::NotLoaded)
         }
@@ -135,6 +135,6 @@ fn build<S: Number>(blob: &Blob, robot: u8, storage: Option<&mut GrnController>)
 }
 
 #[inline(never)]
-fn tick<S: Number>(controller: &mut Controller<S>, percept: &Percept) -> Command {
-    controller.tick(percept)
+fn tick<S: Number>(controller: &mut Controller<S>, percept: &Percept) -> Result<Command, GrnStatus> {
+    Ok(controller.tick(percept)?)
 }

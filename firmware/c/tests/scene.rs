@@ -30,12 +30,9 @@ fn perceive(tick: i16) -> Percept {
         cos -= sin / 16;
         sin += cos / 16;
     }
-    let mut percept = Percept {
-        position: [-400_000 + 3125 * i32::from(tick), -300_000],
-        heading: [cos, sin],
-        proximity: [u16::MAX; 8],
-        ..Percept::default()
-    };
+    let mut percept = Percept::nothing();
+    percept.position = [-400_000 + 3125 * i32::from(tick), -300_000];
+    percept.heading = [cos, sin];
     if tick >= 48 {
         percept.proximity[5] = (400 - 10 * (tick - 48)) as u16;
     }
@@ -64,7 +61,7 @@ fn play<S: Scalar>(blob: &Blob) -> String {
     let mut controller = Controller::<S>::new(blob, 3).unwrap();
     let mut text = format!("{} {:016x}\n", S::NAME, u64::from_be_bytes(controller.identity()));
     for tick in 0..64 {
-        let Command { left, right, broadcast } = controller.tick(&perceive(tick));
+        let Command { left, right, broadcast } = controller.tick(&perceive(tick)).unwrap();
         let bits = controller.morphogen().to_f32().to_bits();
         write!(text, "{tick} {bits:08x} {left} {right}").unwrap();
         if let Some(message) = broadcast {
@@ -103,6 +100,7 @@ fn message(message: &Message) -> GrnMessage {
         position: point(position),
         velocity,
         age,
+        ..GrnTargetReport::default()
     });
     let mut told = GrnMessage {
         sender: message.sender,
@@ -113,28 +111,26 @@ fn message(message: &Message) -> GrnMessage {
         ..GrnMessage::default()
     };
     for (slot, report) in told.obstacles.iter_mut().zip(&message.obstacles) {
-        *slot = GrnObstacleReport { position: point(report.position), age: report.age };
+        *slot = GrnObstacleReport { position: point(report.position), age: report.age, reserved: 0 };
     }
     told
 }
 
 fn percept(percept: &Percept) -> GrnPercept {
-    let mut told = GrnPercept {
-        position: percept.position,
-        heading: percept.heading,
-        proximity: percept.proximity,
-        target_count: percept.targets.len() as u8,
-        obstacle_count: percept.obstacles.len() as u8,
-        heard_count: percept.heard.len() as u8,
-        ..GrnPercept::default()
-    };
-    for (slot, sighting) in told.targets.iter_mut().zip(&percept.targets) {
-        *slot = GrnSighting { target: sighting.target, position: point(sighting.position) };
+    // By name, so that a field that a percept gets is missed here.
+    let Percept { position, heading, proximity, targets, obstacles, heard } = percept;
+    let mut told = GrnPercept::nothing();
+    (told.position, told.heading, told.proximity) = (*position, *heading, *proximity);
+    told.target_count = targets.len() as u8;
+    told.obstacle_count = obstacles.len() as u8;
+    told.heard_count = heard.len() as u8;
+    for (slot, sighting) in told.targets.iter_mut().zip(targets) {
+        *slot = GrnSighting { target: sighting.target, reserved: 0, position: point(sighting.position) };
     }
-    for (slot, &position) in told.obstacles.iter_mut().zip(&percept.obstacles) {
+    for (slot, &position) in told.obstacles.iter_mut().zip(obstacles) {
         *slot = point(position);
     }
-    for (slot, heard) in told.heard.iter_mut().zip(&percept.heard) {
+    for (slot, heard) in told.heard.iter_mut().zip(heard) {
         *slot = message(heard);
     }
     told
@@ -148,12 +144,17 @@ fn random(state: &mut u64) -> Percept {
     };
     let mut number = |low: i32, high: i32| low + (next() % (high - low + 1) as u32) as i32;
     let place = |number: &mut dyn FnMut(i32, i32) -> i32| at(number(-900, 900) as i16, number(-900, 900) as i16);
+    let angle = f64::from(number(0, 359)).to_radians();
+    let (sin, cos) = libm::sincos(angle);
+    let length = f64::from(number(15_880, 16_880));
     let mut percept = Percept {
         position: [number(-800_000, 800_000), number(-800_000, 800_000)],
-        heading: [number(-16_384, 16_384) as i16, number(-16_384, 16_384) as i16],
-        ..Percept::default()
+        heading: [(cos * length) as i16, (sin * length) as i16],
+        proximity: [(); 8].map(|()| number(0, 500) as u16),
+        targets: heapless::Vec::new(),
+        obstacles: heapless::Vec::new(),
+        heard: heapless::Vec::new(),
     };
-    percept.proximity = percept.proximity.map(|_| number(0, 500) as u16);
     for _ in 0..number(0, 4) {
         let target = number(0, 5) as u8;
         percept.targets.push(Sighting { target, position: place(&mut number) }).unwrap();
@@ -195,13 +196,14 @@ fn compare<S: Scalar>(bytes: &[u8], number: GrnNumber) {
     let mut state = 1;
     for tick in 0..300 {
         let perceived = random(&mut state);
-        let Command { left, right, broadcast } = controller.tick(&perceived);
+        let Command { left, right, broadcast } = controller.tick(&perceived).unwrap();
         let mut command = GrnCommand::default();
         assert_eq!(unsafe { grn_tick(&mut storage, &percept(&perceived), &mut command) }, GrnStatus::Ok);
         let expected = GrnCommand {
             left,
             right,
             has_broadcast: broadcast.is_some().into(),
+            reserved: 0,
             broadcast: broadcast.as_ref().map(message).unwrap_or_default(),
         };
         assert_eq!(command, expected, "tick {tick}");

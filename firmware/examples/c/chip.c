@@ -59,7 +59,8 @@ static void print_bytes(const char *what, uint32_t number) {
 static void measure_stack(GrnNumber number, const char *name) {
     static GrnController controller;
     static GrnCommand command;
-    static const GrnPercept percept = {.target_count = 1, .obstacle_count = 1, .heard_count = 1};
+    static GrnPercept percept = GRN_PERCEPT_NOTHING;
+    percept.target_count = percept.obstacle_count = percept.heard_count = 1;
     paint_stack();
     grn_load(&controller, sizeof controller, blob, (size_t)(blob_end - blob), number, 0);
     uint32_t load = used_stack();

@@ -9,7 +9,7 @@ enum { TICKS = 64, ROBOT = 3, NEIGHBOUR = 7 };
 
 // What the robot perceives in a tick.
 static void perceive(int tick, GrnPercept *percept) {
-    *percept = (GrnPercept){0};
+    *percept = (GrnPercept)GRN_PERCEPT_NOTHING;
     // At 100 mm/s to the east, 0.3 m south of the origin.
     percept->position[0] = -400000 + 3125 * tick;
     percept->position[1] = -300000;
@@ -21,7 +21,6 @@ static void perceive(int tick, GrnPercept *percept) {
     }
     percept->heading[0] = (int16_t)cos;
     percept->heading[1] = (int16_t)sin;
-    for (int sensor = 0; sensor < GRN_PROXIMITY_SENSORS; sensor++) percept->proximity[sensor] = UINT16_MAX;
     if (tick >= 48) percept->proximity[5] = (uint16_t)(400 - 10 * (tick - 48));  // 90 degrees left
     if (tick % 8 == 0) {
         percept->target_count = 1;

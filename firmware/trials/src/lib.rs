@@ -166,7 +166,7 @@ fn run<S: Bits>(blob: &Blob, number: u32, ticks: u32, hasher: &mut Hasher) {
     };
     let mut walk = Walk::new(number);
     for _ in 0..ticks {
-        let command = controller.tick(&walk.percept());
+        let Ok(command) = controller.tick(&walk.percept()) else { return hasher.bytes(b"percept") };
         hasher.command(&command);
         hasher.number(controller.morphogen());
         walk.follow(&command);

@@ -112,8 +112,15 @@ impl fmt::Display for BlobError {
             BlobError::Malformed => {
                 write!(f, "the payload does not have the shape of a controller; write the blob again")
             }
-            BlobError::Opcode { gene, opcode } => write!(f, "gene {gene}: {opcode} is no motif's opcode (1 to 10)"),
-            BlobError::Kernel(code) => write!(f, "kernel {code} is neither gaussian (1) nor exponential (2)"),
+            BlobError::Opcode { gene, opcode } => {
+                write!(f, "gene {gene}: {opcode} is no motif's opcode (1 to 10): update the software that reads it")
+            }
+            BlobError::Kernel(code) => {
+                write!(
+                    f,
+                    "kernel {code} is neither gaussian (1) nor exponential (2): update the software that reads it"
+                )
+            }
             BlobError::Step(error) => error.fmt(f),
             BlobError::Network(error) => error.fmt(f),
             BlobError::Parameter { name, value, low, high } => {

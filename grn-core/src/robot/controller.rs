@@ -5,7 +5,7 @@ use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
 use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Bearing, Motion};
-use super::percept::{Command, Percept};
+use super::percept::{Command, Percept, PerceptError};
 use super::position::Millimetres;
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
@@ -107,13 +107,19 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         self.identity
     }
 
-    /// The level of the pattern morphogen M at the robot, as its genes express it now.
+    /// The level of the pattern morphogen M at the robot, as its genes express it now: 0 before the first target is known,
+    /// then about 0 to 1. A last gene XNOR may take it a little below 0, a last gene XOR a little above 1.
     pub fn morphogen(&self) -> S {
         self.expression.morphogen(&self.network)
     }
 
     /// One control tick, every 1/32 s: perceive, express genes, move.
-    pub fn tick(&mut self, percept: &Percept) -> Command {
+    ///
+    /// # Errors
+    /// [`PerceptError`] if no robot can be where and as the percept says. Then this was no tick: nothing has changed, and
+    /// the robot is to stop its wheels.
+    pub fn tick(&mut self, percept: &Percept) -> Result<Command, PerceptError> {
+        percept.check()?;
         self.tick = self.tick.wrapping_add(1);
         let [east, north] = percept.position.map(S::from_millionths);
         let here = Vector::new(east, north);
@@ -121,7 +127,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let heading = heading(percept.heading);
         let wanted = self.wanted_velocity(here, percept) + reflex(&percept.proximity, heading, self.reflex);
         let (left, right) = self.drive.wheels(wanted, heading);
-        Command { left, right, broadcast: self.broadcast(percept) }
+        Ok(Command { left, right, broadcast: self.broadcast(percept) })
     }
 
     fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept) -> Vector<S> {

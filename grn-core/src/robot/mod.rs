@@ -19,5 +19,5 @@ pub mod slots;
 
 pub use controller::{Controller, LoadError};
 pub use message::{Message, ObstacleReport, TargetReport};
-pub use percept::{Command, Percept, Sighting};
+pub use percept::{Command, Percept, PerceptError, Sighting};
 pub use position::Millimetres;

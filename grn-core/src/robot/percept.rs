@@ -3,6 +3,7 @@
 use super::epuck2::PROXIMITY_SENSORS;
 use super::message::Message;
 use super::position::Millimetres;
+use core::fmt;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -12,6 +13,16 @@ pub const MAX_TARGETS: usize = 4;
 pub const MAX_SEEN_OBSTACLES: usize = 8;
 /// The most messages delivered to a robot in one tick; a radio keeps the strongest.
 pub const MAX_HEARD: usize = 8;
+/// The farthest a robot may be from the origin in x and in y, micrometres: what a [`Message`] can say, in millimetres.
+pub const MAX_POSITION: i32 = 32_767_000;
+/// The length of a heading in its own unit.
+pub const HEADING_UNIT: i16 = 1 << 14;
+/// How far the length of a heading may be from [`HEADING_UNIT`]: a 32nd of it.
+///
+/// A heading that is too long makes the robot faster by the same share and turns it no other way, so a little does no harm:
+/// that of a table of sines, or of a heading that is turned by small angles again and again. A wrong unit (degrees, 2^-15,
+/// thousandths) or a heading that was never set is much farther off.
+pub const HEADING_TOLERANCE: i16 = HEADING_UNIT / 32;
 
 /// A target seen with the robot's own sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,11 +34,15 @@ pub struct Sighting {
 }
 
 /// Everything a robot perceives in one tick.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+///
+/// It has no `Default`, because zeros mean something else than nothing: obstacles that touch the robot on all sides. Begin
+/// with [`Percept::nothing`], or name every field, so that the compiler finds the places that a new field concerns.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Percept {
-    /// Own position in the world, micrometres.
+    /// Own position in the world, micrometres, within ±[`MAX_POSITION`].
     pub position: [i32; 2],
-    /// Own heading as (cos, sin), in units of 2^-14.
+    /// Own heading as (cos, sin), in units of 2^-14: a vector of length [`HEADING_UNIT`], give or take
+    /// [`HEADING_TOLERANCE`].
     pub heading: [i16; 2],
     /// Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; `u16::MAX` when
     /// nothing is in range. Bearings as in [`PROXIMITY_BEARINGS_DEG`](super::epuck2::PROXIMITY_BEARINGS_DEG).
@@ -49,4 +64,127 @@ pub struct Command {
     pub right: i16,
     /// What to broadcast in this tick, if anything.
     pub broadcast: Option<Message>,
+}
+
+/// Why a percept is not one that a robot can have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PerceptError {
+    /// The position is farther from the origin than [`MAX_POSITION`].
+    Position {
+        /// The position, micrometres.
+        position: [i32; 2],
+    },
+    /// The heading is not a unit vector.
+    Heading {
+        /// The heading, units of 2^-14.
+        heading: [i16; 2],
+    },
+}
+
+impl Percept {
+    /// The percept of a robot at the origin that looks east, and perceives nothing around it.
+    pub const fn nothing() -> Self {
+        Percept {
+            position: [0; 2],
+            heading: [HEADING_UNIT, 0],
+            proximity: [u16::MAX; PROXIMITY_SENSORS],
+            targets: Vec::new(),
+            obstacles: Vec::new(),
+            heard: Vec::new(),
+        }
+    }
+
+    /// Whether a robot can be where and as this percept says.
+    ///
+    /// # Errors
+    /// [`PerceptError`].
+    pub fn check(&self) -> Result<(), PerceptError> {
+        let Percept { position, heading, .. } = *self;
+        if !position.iter().all(|coordinate| (-MAX_POSITION..=MAX_POSITION).contains(coordinate)) {
+            return Err(PerceptError::Position { position });
+        }
+        const SHORTEST: u32 = (HEADING_UNIT - HEADING_TOLERANCE) as u32;
+        const LONGEST: u32 = (HEADING_UNIT + HEADING_TOLERANCE) as u32;
+        let [x, y] = heading.map(|component| u32::from(component.unsigned_abs()));
+        if !(SHORTEST * SHORTEST..=LONGEST * LONGEST).contains(&(x * x + y * y)) {
+            return Err(PerceptError::Heading { heading });
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for PerceptError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PerceptError::Position { position: [x, y] } => write!(
+                f,
+                "the robot's position ({x}, {y}) is out of range: give micrometres, within {MAX_POSITION} of the origin in \
+                 both directions"
+            ),
+            PerceptError::Heading { heading: [x, y] } => write!(
+                f,
+                "the robot's heading ({x}, {y}) is not a unit vector: give its cosine and sine times {HEADING_UNIT}; the \
+                 length may be {HEADING_TOLERANCE} off"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for PerceptError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::string::ToString;
+
+    fn looking(heading: [i16; 2]) -> Result<(), PerceptError> {
+        Percept { heading, ..Percept::nothing() }.check()
+    }
+
+    fn at(position: [i32; 2]) -> Result<(), PerceptError> {
+        Percept { position, ..Percept::nothing() }.check()
+    }
+
+    #[test]
+    fn nothing_is_a_percept_in_which_nothing_is_near() {
+        let nothing = Percept::nothing();
+        assert_eq!(nothing.check(), Ok(()));
+        assert_eq!(nothing.proximity, [u16::MAX; 8]);
+        assert!(nothing.targets.is_empty() && nothing.obstacles.is_empty() && nothing.heard.is_empty());
+    }
+
+    #[test]
+    fn headings_of_another_length_than_one_are_refused() {
+        for angle in 0..360 {
+            let (sin, cos) = libm::sincos(f64::from(angle).to_radians());
+            let of_length = |length: f64| looking([libm::round(cos * length) as i16, libm::round(sin * length) as i16]);
+            for length in [15_874.0, 16_384.0, 16_894.0] {
+                assert_eq!(of_length(length), Ok(()), "{angle} degrees, length {length}");
+            }
+            for length in [0.0, 1.0, 100.0, 1000.0, 10_000.0, 15_870.0, 16_898.0, 20_000.0, 32_767.0] {
+                assert!(of_length(length).is_err(), "{angle} degrees, length {length}");
+            }
+        }
+        for heading in [[15_872, 0], [0, -16_896]] {
+            assert_eq!(looking(heading), Ok(()));
+        }
+        for heading in [[15_871, 0], [0, -16_897], [16_384, 16_384], [i16::MIN, i16::MIN], [i16::MIN, 0], [0, i16::MAX]]
+        {
+            assert_eq!(looking(heading), Err(PerceptError::Heading { heading }));
+        }
+        let text = PerceptError::Heading { heading: [90, 0] }.to_string();
+        assert!(text.contains("(90, 0)") && text.contains("16384"), "{text}");
+    }
+
+    #[test]
+    fn positions_that_no_message_can_say_are_refused() {
+        for position in [[32_767_000, -32_767_000], [0, 32_767_000]] {
+            assert_eq!(at(position), Ok(()));
+        }
+        for position in [[32_767_001, 0], [0, -32_767_001], [i32::MIN, 0], [i32::MAX, i32::MIN]] {
+            assert_eq!(at(position), Err(PerceptError::Position { position }));
+        }
+        let text = PerceptError::Position { position: [i32::MAX, 5] }.to_string();
+        assert!(text.contains("(2147483647, 5)") && text.contains("micrometres"), "{text}");
+    }
 }

@@ -103,8 +103,12 @@ fn unopened(port: &Port, error: &OpenError) -> &'static str {
         OpenError::OtherKind(_) if serial => "give a serial port; `grn robots` without a port lists them",
         OpenError::OtherKind(_) => "give the path of a socket",
         OpenError::Refused(error) => match (error.kind(), port) {
-            (ErrorKind::NotFound, Port::Serial(name)) if name.contains(':') => "for a socket write tcp:HOST:PORT or unix:PATH",
-            (ErrorKind::NotFound, Port::Serial(_)) => "is it plugged in? `grn robots` without a port lists the serial ports",
+            (ErrorKind::NotFound, Port::Serial(name)) if name.contains(':') => {
+                "for a socket write tcp:HOST:PORT or unix:PATH"
+            }
+            (ErrorKind::NotFound, Port::Serial(_)) => {
+                "is it plugged in? `grn robots` without a port lists the serial ports"
+            }
             (ErrorKind::NotFound, _) => "start what listens there, or check the path",
             (ErrorKind::PermissionDenied, Port::Serial(_)) => {
                 "ask for permission: on Linux `sudo usermod -aG dialout $USER`, then log in again"

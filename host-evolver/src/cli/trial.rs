@@ -1,6 +1,8 @@
 //! `grn confirm` and `grn rollback`: how the trial of a blob ends.
 
-use super::connection::{CONNECT_LIMIT, ConnectionError, DEFAULT_BAUD, connect, described, failed, hexadecimal, in_charge};
+use super::connection::{
+    CONNECT_LIMIT, ConnectionError, DEFAULT_BAUD, connect, described, failed, hexadecimal, in_charge,
+};
 use super::{Answer, Failure, output};
 use grn_core::robot::link::Refusal;
 use grn_core::robot::link::message::{Confirm, RollBack, Status};

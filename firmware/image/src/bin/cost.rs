@@ -72,17 +72,17 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     };
     let Ok(mut controller) = Controller::<S>::new(blob, 0) else { return false };
     let everything = scene::everything();
-    let first = instructions(&mut || drop(black_box(controller.tick(black_box(&everything)))));
+    let first = instructions(&mut || _ = black_box(controller.tick(black_box(&everything))));
     let Ok(mut full) = Controller::<S>::new(blob, 0) else { return false };
     for north in [500, 1000] {
-        full.tick(&scene::everything_farther(north));
+        let _ = black_box(full.tick(&scene::everything_farther(north)));
     }
-    let displaced = instructions(&mut || drop(black_box(full.tick(black_box(&everything)))));
+    let displaced = instructions(&mut || _ = black_box(full.tick(black_box(&everything))));
     // The sum and the largest of several ticks.
     let mut ticks = |percept: fn(u32) -> Percept| {
         let cost = |tick| {
             let percept = percept(tick);
-            instructions(&mut || drop(black_box(controller.tick(black_box(&percept)))))
+            instructions(&mut || _ = black_box(controller.tick(black_box(&percept))))
         };
         (0..TICKS).map(cost).fold((0, 0), |(sum, dearest), cost| (sum + cost, cost.max(dearest)))
     };

@@ -4,6 +4,7 @@ use super::message::VERSION;
 use crate::blob::{BlobError, FORMAT_VERSION};
 use crate::network::NetworkError;
 use crate::robot::controller::LoadError;
+use crate::robot::percept::PerceptError;
 use crate::robot::slots::SlotError;
 use core::fmt;
 use serde::{Deserialize, Serialize};
@@ -51,6 +52,8 @@ pub enum Refusal {
     Load(LoadFault),
     /// No blob is in charge.
     NoController,
+    /// No robot can have this percept; it was not ticked.
+    Percept(PerceptFault),
     /// The blob in charge has the highest upload number there is, so no upload could be newer.
     SequenceUsedUp,
 }
@@ -82,6 +85,8 @@ pub enum BlobFault {
     },
     /// Not a network, a parameter out of range, or not in canonical form.
     Content,
+    /// A motif or kernel that this firmware does not know.
+    UnknownCode,
 }
 
 /// Why a sound blob cannot drive a robot.
@@ -93,6 +98,15 @@ pub enum LoadFault {
     NoRing,
     /// Time scale and step do not give whole RK4 steps in a tick.
     StepsPerTick,
+}
+
+/// What is wrong with a percept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PerceptFault {
+    /// The position is out of range.
+    Position,
+    /// The heading is not a unit vector.
+    Heading,
 }
 
 impl From<BlobError> for BlobFault {
@@ -107,7 +121,13 @@ impl From<BlobError> for BlobFault {
             BlobError::Network(NetworkError::TooManyGenes { genes, capacity }) => {
                 BlobFault::TooManyGenes { genes: clipped(genes), capacity: clipped(capacity) }
             }
-            _ => BlobFault::Content,
+            BlobError::Opcode { .. } | BlobError::Kernel(_) => BlobFault::UnknownCode,
+            BlobError::Malformed
+            | BlobError::Step(_)
+            | BlobError::Network(_)
+            | BlobError::Parameter { .. }
+            | BlobError::NotCanonical
+            | BlobError::BufferTooSmall { .. } => BlobFault::Content,
         }
     }
 }
@@ -147,6 +167,15 @@ impl From<LoadError> for Refusal {
     }
 }
 
+impl From<PerceptError> for Refusal {
+    fn from(error: PerceptError) -> Self {
+        Refusal::Percept(match error {
+            PerceptError::Position { .. } => PerceptFault::Position,
+            PerceptError::Heading { .. } => PerceptFault::Heading,
+        })
+    }
+}
+
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -154,11 +183,11 @@ impl fmt::Display for Refusal {
                 return write!(
                     f,
                     "it speaks version {spoken} of the link, not {VERSION}: uploads work all the same; for the rest update \
-                     its firmware or this program"
+                     the robot's firmware or this program"
                 );
             }
-            Refusal::Unknown => "it does not know this request: update its firmware",
-            Refusal::Malformed => "it cannot read this request: update its firmware or this program",
+            Refusal::Unknown => "it does not know this request: update the robot's firmware",
+            Refusal::Malformed => "it cannot read this request: update the robot's firmware or this program",
             Refusal::Layout => "its slots do not fit its flash: build its firmware with another slot layout",
             Refusal::Flash => "its flash failed: try again; if it fails again the sector may be worn out",
             Refusal::TooLong => "the blob is longer than any it holds: choose a model with fewer genes",
@@ -182,6 +211,12 @@ impl fmt::Display for Refusal {
                 "time_scale and step do not give 1 to 64 whole RK4 steps a tick: write the blob with others"
             }
             Refusal::NoController => "no blob is in charge: upload and activate one",
+            Refusal::Percept(PerceptFault::Position) => {
+                "the percept's position is out of range: give micrometres, within 32.767 m of the origin"
+            }
+            Refusal::Percept(PerceptFault::Heading) => {
+                "the percept's heading is not a unit vector: give cosine and sine in units of 2^-14"
+            }
             Refusal::SequenceUsedUp => {
                 "the blob in charge has the highest upload number, 4294967295, so no upload could be newer: roll it back, or \
                  write its slot with a programmer and a lower number"
@@ -196,20 +231,23 @@ impl fmt::Display for BlobFault {
             BlobFault::Length => f.write_str("the blob is cut short or too long: upload it again"),
             BlobFault::NotABlob => f.write_str("this is no GRN blob: choose a .grn file"),
             BlobFault::Version { found, read } if found > read => {
-                write!(f, "format version {found}, the robot reads {read}: update its firmware")
+                write!(f, "format version {found}, the robot reads {read}: update the robot's firmware")
             }
             BlobFault::Version { found, read } => {
                 write!(f, "format version {found}, the robot reads {read}: write the blob again with this release")
             }
             BlobFault::Damaged => f.write_str("the blob is damaged: upload it again"),
             BlobFault::Convention(found) => {
-                write!(f, "unknown convention {found} for frame, units and normalisation: update its firmware")
+                write!(f, "unknown convention {found} for frame, units and normalisation: update the robot's firmware")
             }
             BlobFault::TooManyGenes { genes, capacity } => write!(
                 f,
                 "{genes} genes, the robot holds at most {capacity}: choose a smaller model or build its firmware for more"
             ),
             BlobFault::Content => f.write_str("the blob's content is not a legal controller: write it again"),
+            BlobFault::UnknownCode => {
+                f.write_str("the blob has a motif or kernel that the robot does not know: update the robot's firmware")
+            }
         }
     }
 }

@@ -74,7 +74,8 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
     /// One control tick with the robot's own percept.
     ///
     /// # Errors
-    /// [`Refusal::NoController`] while no blob is in charge.
+    /// [`Refusal::NoController`] while no blob is in charge, [`Refusal::Percept`] for a percept that no robot can have.
+    /// After a refusal the robot is to stop its wheels.
     pub fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         self.robot.tick(percept)
     }
@@ -174,7 +175,7 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     #[inline(never)]
     fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
-        let command = controller.tick(percept);
+        let command = controller.tick(percept)?;
         self.ticks = self.ticks.saturating_add(1);
         if self.ticks == TRIAL_TICKS {
             self.slots.confirm(controller.identity())?;

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 fn a_robot_is_listed_flashed_and_tried() -> Outcome {
     let Robot { port, .. } = Robot::empty()?;
     let (old, new) = (model("nand-xnor"), model("andn-nand-xnor"));
-    assert_answer(&grn(&["robots", &port])?, 0, &["robot 7", "F32", "slot 0: empty", "slot 1: empty"]);
+    assert_answer(&grn(&["robots", &port])?, 0, &["robot 7", "f32", "slot 0: empty", "slot 1: empty"]);
     assert_answer(&grn(&["flash", &old, "--to", &port, "--dry-run"])?, 0, &["nothing is sent", "chunk at 64"]);
     assert_answer(&grn(&["robots", &port])?, 0, &["slot 0: empty"]);
     assert_answer(&grn(&["flash", &old, "--to", &port])?, 0, &["robot 7 is in charge"]);
@@ -245,9 +245,18 @@ fn what_is_no_port_is_told_with_a_way_out() -> Outcome {
         assert_answer(&grn(&["flash", &model("nand-xnor"), "--to", &port])?, 2, &words);
         assert_answer(&grn(&["confirm", &port])?, 2, &words);
     }
-    for port in ["tcp:robot:70000", "tcp:robot:0", "tcp:robot", "tcp::7000", "unix:", ""] {
-        assert_answer(&grn(&["robots", port])?, 2, &["port"]);
-        assert_answer(&grn(&["flash", &model("nand-xnor"), "--to", port])?, 2, &["port"]);
+    let cases = [
+        ("tcp:robot:70000", "1 to 65535"),
+        ("tcp:robot:0", "1 to 65535"),
+        ("tcp:robot", "the port number is missing"),
+        ("tcp::7000", "the host is missing"),
+        ("tcp:a:b:7000", "in brackets"),
+        ("unix:", "the path is missing"),
+        ("", "give a serial port, tcp:HOST:PORT or unix:PATH"),
+    ];
+    for (port, words) in cases {
+        assert_answer(&grn(&["robots", port])?, 2, &[words]);
+        assert_answer(&grn(&["flash", &model("nand-xnor"), "--to", port])?, 2, &[words]);
     }
     Ok(())
 }

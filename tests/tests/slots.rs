@@ -251,11 +251,17 @@ fn power_loss_at_every_step_of_activating_confirming_and_rolling_back() {
 }
 
 #[test]
-fn power_loss_at_every_step_of_an_upload_over_the_highest_number() {
-    let [new, old, older] = models();
-    let (mut slots, _) = start(at_the_top(&old, &older)).unwrap();
-    slots.roll_back(old.identity).unwrap();
-    survives_power_loss(&slots.into_flash(), &older, &new, |slots| install(slots, &new));
+fn power_loss_at_every_step_of_an_upload_over_a_higher_number() {
+    let [new, old, rolled_back] = models();
+    let (mut slots, _) = start(empty_flash(6)).unwrap();
+    install(&mut slots, &old).unwrap();
+    let mut flash = slots.into_flash();
+    let (image, place) = (image(&rolled_back.bytes, u32::MAX - 1).unwrap(), LAYOUT.starts[1] as usize);
+    flash.bytes_mut()[place..place + image.len()].copy_from_slice(&image);
+    let (mut slots, active) = start(flash).unwrap();
+    assert_eq!(active, Some(rolled_back.identity));
+    slots.roll_back(rolled_back.identity).unwrap();
+    survives_power_loss(&slots.into_flash(), &old, &new, |slots| install(slots, &new));
 }
 
 /// The old controller must not go on driving when the flash says that another blob is in charge.

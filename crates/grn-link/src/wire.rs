@@ -16,7 +16,7 @@ pub trait Wire: Send {
     /// What the operating system says; the wire is of no further use then.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits for bytes for at most about `patience` and tells how many have come; 0 if none.
+    /// Waits for bytes, about as long as `patience` at most, and puts them to the front of `buffer`. How many; 0 if none came.
     ///
     /// # Errors
     /// What the operating system says, or that the other side has gone; the wire is of no further use then.

@@ -57,28 +57,28 @@ type Asked = Result<(About, RobotStatus), ConnectionError>;
 /// Asks all ports at the same time and tells of them in their order, each as soon as those before it are told.
 fn ask_all(ports: &[Port], baud: u32, mut tell: impl FnMut(&Port, Asked)) {
     let next = AtomicUsize::new(0);
+    let claim = || {
+        let place = next.fetch_add(1, Ordering::Relaxed);
+        Some((place, ports.get(place)?))
+    };
     thread::scope(|scope| {
-        let (answer, answers) = mpsc::channel();
+        let (sender, answers) = mpsc::channel();
         for _ in 0..ports.len().min(THREADS) {
-            let (answer, next) = (answer.clone(), &next);
+            let sender = sender.clone();
             scope.spawn(move || {
-                while let Some((place, port)) = Some(next.fetch_add(1, Ordering::Relaxed))
-                    .and_then(|place| ports.get(place).map(|port| (place, port)))
-                {
-                    // Whoever listens takes all answers.
-                    let _ = answer.send((place, ask(port, baud)));
+                while let Some((place, port)) = claim() {
+                    // The receiver stays until all senders have gone.
+                    let _ = sender.send((place, ask(port, baud)));
                 }
             });
         }
-        drop(answer);
-        let mut early = BTreeMap::new();
-        let mut untold = ports.iter().enumerate();
+        drop(sender);
+        let (mut early, mut told) = (BTreeMap::new(), 0);
         for (place, answer) in answers {
             early.insert(place, answer);
-            while let Some(answer) = early.remove(&(ports.len() - untold.len())) {
-                if let Some((_, port)) = untold.next() {
-                    tell(port, answer);
-                }
+            while let (Some(answer), Some(port)) = (early.remove(&told), ports.get(told)) {
+                tell(port, answer);
+                told += 1;
             }
         }
     });

@@ -35,7 +35,7 @@ pub enum Refusal {
     NoUpload,
     /// The next chunk begins elsewhere.
     Chunk {
-        /// Where.
+        /// The offset at which it begins, bytes.
         expected: u32,
     },
     /// The blob is unsound.

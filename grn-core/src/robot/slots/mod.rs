@@ -68,7 +68,7 @@ pub struct SlotStatus {
     pub identity: Identity,
     /// The blob's length, bytes.
     pub length: u32,
-    /// Counts uploads; the higher is the newer.
+    /// Of two slots the one with the higher number is newer; an upload gets the next number after that of the other slot.
     pub sequence: u32,
 }
 
@@ -92,12 +92,6 @@ pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }
     append(&[0xff; UNIT * (MARKS - 3)])?;
     append(blob)?;
     Ok(image)
-}
-
-/// The sequence number of an upload: above that of the slot that is kept, so that the upload is the newer of the two; and
-/// above that of the slot that is erased if there is such a number, so that it counts uploads.
-fn sequence_after(kept: u32, erased: u32) -> Option<u32> {
-    kept.max(erased).checked_add(1).or(kept.checked_add(1))
 }
 
 /// An upload under way.
@@ -198,7 +192,8 @@ impl<F: NorFlash> Slots<F> {
         if on_trial && other.stage == Stage::Confirmed {
             return Err(SlotError::OnTrial);
         }
-        let sequence = sequence_after(kept.sequence, other.sequence).ok_or(SlotError::SequenceUsedUp)?;
+        // Newer than the slot that stays; the number of the slot that is erased does not matter.
+        let sequence = kept.sequence.checked_add(1).ok_or(SlotError::SequenceUsedUp)?;
         let header = Header { length, sequence, identity };
         self.upload = None;
         let start = self.start_of(slot);

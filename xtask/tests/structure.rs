@@ -7,15 +7,19 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Crates from the ground floor up: each may use those before it.
-const FLOORS: [&str; 8] = [
+const FLOORS: [&str; 12] = [
     "grn-core",
+    "grn-input",
     "grn-optimisers",
     "grn-figures",
     "grn-link",
     "firmware-sim",
     "host-evolver",
     "grn-trials",
+    "grn-firmware",
+    "grn-c",
     "grn-tests",
+    "xtask",
 ];
 /// More lines than this are too many to hold in mind.
 const MOST_LINES: usize = 400;
@@ -59,7 +63,8 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn crates_use_only_the_floors_below_them() {
     for (name, _, manifest) in crates() {
-        let Some(floor) = FLOORS.iter().position(|known| *known == name) else { continue };
+        let floor = FLOORS.iter().position(|known| *known == name);
+        let floor = floor.unwrap_or_else(|| panic!("{name} has no floor yet: give it one in this test"));
         let dependencies = manifest.get("dependencies").and_then(toml::Value::as_table).cloned().unwrap_or_default();
         for dependency in dependencies.keys() {
             if let Some(below) = FLOORS.iter().position(|known| known == dependency) {

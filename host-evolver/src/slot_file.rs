@@ -39,7 +39,8 @@ impl SlotPaths {
     /// The paths in a folder.
     ///
     /// # Errors
-    /// A folder whose path is not UTF-8: no printed command could name it.
+    /// A folder that no command could name: its path is not UTF-8, or has a `~` behind a blank, which GDB replaces by a home
+    /// folder whatever stands around it.
     pub fn in_folder(folder: &Path) -> Result<Self, FileError> {
         let absolute = std::path::absolute(folder)
             .map_err(|error| FileError::new(folder, format!("this is no path of a folder: {error}")))?;
@@ -48,7 +49,12 @@ impl SlotPaths {
             Err(_) => Err(FileError::new(folder, "its path is not UTF-8: choose another folder with --out")),
         };
         let [hex, binary, gdb] = SlotPaths::NAMES.map(path);
-        Ok(SlotPaths { hex: hex?, binary: binary?, gdb: gdb? })
+        let paths = SlotPaths { hex: hex?, binary: binary?, gdb: gdb? };
+        if [" ~", "\t~"].iter().any(|home| paths.hex.contains(home)) {
+            let told = "GDB takes a ~ behind a blank for a home folder: choose another folder with --out";
+            return Err(FileError::new(folder, told));
+        }
+        Ok(paths)
     }
 
     /// The shell command that runs the GDB script.

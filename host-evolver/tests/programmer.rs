@@ -112,8 +112,20 @@ const AWKWARD: [&str; 9] = [
     "100 % $HOME `id` #1",
     "tab\tand\rreturn",
     "größe 5 µm",
-    "-x ~",
+    "-x~ /~root",
 ];
+
+#[test]
+fn folders_that_gdb_cannot_be_told_are_refused() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    for name in ["my ~", "my ~/files", "a\t~root"] {
+        let out = folder.path().join(name);
+        let place = out.to_str().ok_or("not UTF-8")?;
+        assert_answer(&grn(&["flash", &model("nand-xnor"), "--out", place])?, 2, &[place, "home folder", "--out"]);
+    }
+    assert_eq!(std::fs::read_dir(folder.path())?.count(), 0);
+    Ok(())
+}
 
 /// As much of GDB's remote protocol as `load` needs: the memory that was written to when GDB goes.
 fn target(listener: &TcpListener) -> std::io::Result<BTreeMap<u32, u8>> {

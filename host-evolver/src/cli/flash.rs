@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "to")]
     force: bool,
     /// Number of this upload, for --out: the robot takes the slot with the higher one [default: seconds since 1970].
-    #[arg(long, conflicts_with = "to")]
+    #[arg(long, conflicts_with = "to", allow_negative_numbers = true)]
     sequence: Option<UploadNumber>,
     /// Serial port of the robot's programmer, for flash.gdb.
     #[arg(long, default_value = Programmer::DEFAULT, conflicts_with = "to")]

@@ -14,7 +14,8 @@ const SELDOM: Duration = Duration::from_secs(30);
 pub struct Arguments {
     /// The campaign: scenarios, methods, models, transfers, seeds.
     file: PathBuf,
-    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    /// Folder of the campaign, new, empty, or with this campaign, which may have got more seeds: runs that are there whole are
+    /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads to work with; the results do not depend on it [default: all cores].

@@ -29,7 +29,7 @@ pub struct Arguments {
     /// Threads to work with; the result does not depend on it [default: all cores].
     #[arg(long)]
     threads: Option<NonZeroUsize>,
-    /// Budget: evaluations of f2.
+    /// Budget: evaluations of f2; with --resume it may be larger than before.
     #[arg(long, default_value_t = Settings::default().evaluations)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
@@ -41,10 +41,10 @@ pub struct Arguments {
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE)]
     scale: f32,
-    /// Folder of the run [default: runs/SCENARIO-seed-N, or the next free name].
+    /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Continue the run in the folder.
+    /// Continue the run in the folder, to the same files as if it had never stopped.
     #[arg(long)]
     resume: bool,
 }
@@ -87,11 +87,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let front = search.front();
     let is_feasible = front.iter().all(|member| member.is_feasible());
     let Results { mut contents, knee, not_drawn } = run.results(&search, &world, arguments.scale)?;
-    run.publish(&contents, !is_feasible)?;
+    run.add(&contents)?;
     not_drawn.iter().for_each(output::notice);
     output::report(front_table(&settings.objectives, &front));
     output::report(format!("\nresults in {}\n", folder.display()));
     if !is_feasible {
+        run.finish(&contents)?;
         output::report(
             "infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations",
         );
@@ -103,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
         contents.insert(format!("simulation/{name}"), content);
     }
-    run.publish(&contents, true)?;
+    run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })

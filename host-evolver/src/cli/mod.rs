@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod campaign;
+mod connection;
 mod draw;
 mod eval;
 mod evolve;
@@ -13,6 +14,7 @@ mod scatter;
 mod show;
 mod simulate;
 mod snippet;
+mod trial;
 
 use crate::files;
 use clap::{Parser, Subcommand};
@@ -48,6 +50,10 @@ enum Command {
     Flash(flash::Arguments),
     /// List the robots that answer on the given ports.
     Robots(robots::Arguments),
+    /// Keep the blob that is in charge of a robot: end its trial.
+    Confirm(trial::Arguments),
+    /// Take the blob out of charge of a robot and put the one before it back.
+    Rollback(trial::Arguments),
     /// Read `x1,x2` lines from standard input and print the steady state M of each.
     Eval(eval::Arguments),
     /// Draw a blob's pattern at each snapshot of a scenario.
@@ -165,6 +171,8 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Scatter(arguments) => scatter::run(arguments),
         Command::Flash(arguments) => flash::run(arguments),
         Command::Robots(arguments) => robots::run(arguments),
+        Command::Confirm(arguments) => trial::run(arguments, trial::End::Confirm),
+        Command::Rollback(arguments) => trial::run(arguments, trial::End::RollBack),
         Command::Show(arguments) => show::run(arguments),
         Command::Eval(arguments) => eval::run(arguments),
         Command::Draw(arguments) => draw::run(arguments),

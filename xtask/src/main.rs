@@ -133,8 +133,16 @@ fn fuzz() -> bool {
     let variables = [("GRN_FUZZ_INPUTS", INPUTS)];
     let decoder = ["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"];
     // With the checks of the test profile: a robot must not even come near an overflow.
-    let link =
-        ["test", "--package", "grn-tests", "--test", "link", "no_frame_makes_a_robot_panic", "--", "--nocapture"];
+    let link = [
+        "test",
+        "--package",
+        "grn-tests",
+        "--test",
+        "link_frames",
+        "no_frame_makes_a_robot_panic",
+        "--",
+        "--nocapture",
+    ];
     let random = [cargo(&decoder, &variables), cargo(&link, &variables)] == [true; 2];
     let ready = Command::new("cargo").args(["+nightly", "fuzz", "--version"]).output();
     if !ready.is_ok_and(|output| output.status.success()) {

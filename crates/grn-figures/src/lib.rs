@@ -42,6 +42,7 @@ pub use grn::data::{Gene, Input, Source};
 pub use grn::figure::grn;
 pub use pareto::data::{ParetoPoint, Reference};
 pub use pareto::figure::pareto;
+pub use pareto::pairs::{ObjectivesFigure, ObjectivesPoint, objectives};
 pub use pattern::{Panel, PatternFigure, Target, pattern};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};

@@ -1,7 +1,8 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, output, progress, this_command};
+use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
+use grn_input::file_name;
 use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -14,11 +15,12 @@ const SELDOM: Duration = Duration::from_secs(30);
 pub struct Arguments {
     /// The campaign: scenarios, methods, models, transfers, seeds.
     file: PathBuf,
-    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    /// Folder of the campaign, new, empty, or with this campaign, which may have got more seeds: runs that are there whole are
+    /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to work with; the results do not depend on it [default: all cores].
-    #[arg(long)]
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
     #[arg(long, value_name = "I/N")]
@@ -30,7 +32,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let plan = Plan::load(&arguments.file)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
     let campaign = Campaign::begin(plan, &folder, &this_command())?;
     let progress = Progress::new(campaign.work());
@@ -41,7 +43,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, NonZeroUsize::get))
+        .build()
+        .map_err(no_threads)?;
     let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);

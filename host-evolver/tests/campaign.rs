@@ -145,7 +145,7 @@ fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     refused(&small().replace("[\"channel\"]", "[\"canal\"]"), &[], &["canal", "channel"])?;
     refused(&small().replace("nand-xnor.grn", "nothing.grn"), &[], &["nothing.grn", "cannot be read"])?;
     refused(&small().replace("\"EH-GRN 2\"", "\"mogp\""), &[], &["mogp", "another"])?;
-    refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["random obstacles", "density", "no room"])?;
+    refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["transfer[0].random.density", "no room"])?;
     refused(&small().replace("worlds = 3", "worlds = 3, depth = 1"), &[], &["campaign.toml", "depth"])?;
     refused(&small().replace("structure = 2", "structure = 2\ncolour = 1"), &[], &["campaign.toml", "colour"])?;
     refused(&small(), &["--shard", "3/2"], &["3/2", "2/3"])?;

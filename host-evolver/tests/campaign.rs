@@ -55,7 +55,6 @@ fn campaign(file: &Path, out: &Path, more: &[&str]) -> Command {
     command
 }
 
-
 fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
 }

@@ -8,6 +8,7 @@ mod figures;
 mod manifest;
 mod method;
 mod plan;
+mod plan_file;
 mod rows;
 mod tables;
 mod trial;

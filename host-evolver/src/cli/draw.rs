@@ -35,7 +35,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     };
     let default = || {
         let stem = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        PathBuf::from(format!("{}-{}.svg", stem(&arguments.blob), stem(&arguments.scenario)))
+        let name = format!("{}-{}", stem(&arguments.blob), stem(&arguments.scenario));
+        PathBuf::from(grn_input::file_name(&name) + ".svg")
     };
     let out = arguments.out.clone().or_else(|| (!arguments.json).then(default));
     if let Some(out) = &out {

@@ -7,11 +7,13 @@ mod eval;
 mod evolve;
 mod flash;
 mod interrupt;
+mod options;
 mod output;
 mod robots;
 mod scatter;
 mod show;
 mod simulate;
+mod snippet;
 mod trial;
 
 use crate::files;
@@ -30,7 +32,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
-                          3 the system failed (disk full); 130 interrupted.";
+                          3 the system failed (disk full, broken device, no threads); 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -89,6 +91,9 @@ impl Failure {
             of_system |= error.downcast_ref().is_some_and(files::is_fault_of_system);
             link = error.source();
         }
+        if let Some(snippet) = snippet::of(error) {
+            message = format!("{message}\n{snippet}");
+        }
         if of_system { Failure::System(message) } else { Failure::Input(message) }
     }
 
@@ -116,6 +121,11 @@ fn this_command() -> String {
 /// Prefixes an error that does not know which file it is about.
 fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
     move |error| Failure::new(error.into().as_ref()).about(place)
+}
+
+/// That the system gives no threads is not the fault of who asks for them.
+fn no_threads(error: impl fmt::Display) -> Failure {
+    Failure::System(format!("threads cannot be started: {error}"))
 }
 
 /// Runs the command line of this process.

@@ -1,6 +1,6 @@
 //! The same world with one number changed: for asking what a result hangs on.
 
-use firmware_sim::scenario::{Morphogen, Ring, Scenario, InputError};
+use firmware_sim::scenario::{InputError, Morphogen, Ring, Scenario};
 use grn_core::field::Kernel;
 use serde::Deserialize;
 

@@ -1,36 +1,20 @@
 //! Targets and obstacles → the morphogens x1 and x2 at a point, with their gradients (model page, section 2).
 
+use crate::coded::coded;
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
 
-/// How a morphogen's concentration falls with distance; u is the distance in widths.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum Kernel {
-    /// κ(u) = e^(-u²/2)
-    Gaussian = 1,
-    /// κ(u) = e^-u
-    Exponential = 2,
+coded! {
+    /// How a morphogen's concentration falls with distance; u is the distance in widths.
+    pub enum Kernel {
+        /// κ(u) = e^(-u²/2)
+        Gaussian = (1, "gaussian"),
+        /// κ(u) = e^-u
+        Exponential = (2, "exponential"),
+    }
 }
 
 impl Kernel {
-    /// The kernel with this numeric code, as in blobs.
-    pub const fn from_code(code: u8) -> Option<Kernel> {
-        match code {
-            1 => Some(Kernel::Gaussian),
-            2 => Some(Kernel::Exponential),
-            _ => None,
-        }
-    }
-
-    /// The name users type in a scenario.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Kernel::Gaussian => "gaussian",
-            Kernel::Exponential => "exponential",
-        }
-    }
-
     /// κ(u), in [0, 1]; a negative u is taken as 0.
     pub fn concentration<S: Scalar>(self, u: S) -> S {
         match self {

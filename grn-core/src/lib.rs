@@ -25,6 +25,7 @@ extern crate std;
 
 pub mod blob;
 pub mod bounded;
+mod coded;
 pub mod dynamics;
 pub mod field;
 pub mod geometry;

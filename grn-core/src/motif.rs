@@ -1,79 +1,41 @@
 //! The ten network motifs: how the inputs of a gene regulate its expression.
 //!
-//! All that there is to a motif is here: another one is a variant with the next free opcode, and an arm in each function.
+//! All that there is to a motif is here: another one is a line of the table with the next free opcode, and an arm in each
+//! function; the compiler and the tests below name what is missing.
 
+use crate::coded::coded;
 use crate::scalar::Arithmetic;
 
 /// The most inputs a gene can have (OR and NOR).
 pub const MAX_INPUTS: usize = 4;
 
-/// A network motif (Fan et al. 2019, section IV-A). The discriminant is its opcode in a blob and never changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[repr(u8)]
-pub enum Motif {
-    /// σ(a)
-    Pos = 1,
-    /// 1 - σ(a)
-    Neg = 2,
-    /// σ(a·b)
-    And = 3,
-    /// 1 - σ(a·b)
-    Nand = 4,
-    /// σ(a + b), of two to four inputs
-    Or = 5,
-    /// 1 - σ(a + b), of two to four inputs
-    Nor = 6,
-    /// σ(a·(1-b))
-    Andn = 7,
-    /// σ(a + (1-b))
-    Orn = 8,
-    /// σ(a·(1-b)) + σ((1-a)·b), both with one θ; may exceed 1
-    Xor = 9,
-    /// 1 - σ(a·(1-b)) - σ((1-a)·b), both with one θ; may be negative
-    Xnor = 10,
+coded! {
+    /// A network motif (Fan et al. 2019, section IV-A), with its opcode in a blob and its name in the paper.
+    pub enum Motif {
+        /// σ(a)
+        Pos = (1, "POS"),
+        /// 1 - σ(a)
+        Neg = (2, "NEG"),
+        /// σ(a·b)
+        And = (3, "AND"),
+        /// 1 - σ(a·b)
+        Nand = (4, "NAND"),
+        /// σ(a + b), of two to four inputs
+        Or = (5, "OR"),
+        /// 1 - σ(a + b), of two to four inputs
+        Nor = (6, "NOR"),
+        /// σ(a·(1-b))
+        Andn = (7, "ANDN"),
+        /// σ(a + (1-b))
+        Orn = (8, "ORN"),
+        /// σ(a·(1-b)) + σ((1-a)·b), both with one θ; may exceed 1
+        Xor = (9, "XOR"),
+        /// 1 - σ(a·(1-b)) - σ((1-a)·b), both with one θ; may be negative
+        Xnor = (10, "XNOR"),
+    }
 }
 
 impl Motif {
-    /// All ten, in the order of their opcodes.
-    pub const ALL: [Motif; 10] = [
-        Motif::Pos,
-        Motif::Neg,
-        Motif::And,
-        Motif::Nand,
-        Motif::Or,
-        Motif::Nor,
-        Motif::Andn,
-        Motif::Orn,
-        Motif::Xor,
-        Motif::Xnor,
-    ];
-
-    /// The numeric opcode, 1 to 10.
-    pub const fn opcode(self) -> u8 {
-        self as u8
-    }
-
-    /// The motif with this opcode, if there is one.
-    pub fn from_opcode(opcode: u8) -> Option<Motif> {
-        Motif::ALL.into_iter().find(|motif| motif.opcode() == opcode)
-    }
-
-    /// The name in capitals, as in the paper.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Motif::Pos => "POS",
-            Motif::Neg => "NEG",
-            Motif::And => "AND",
-            Motif::Nand => "NAND",
-            Motif::Or => "OR",
-            Motif::Nor => "NOR",
-            Motif::Andn => "ANDN",
-            Motif::Orn => "ORN",
-            Motif::Xor => "XOR",
-            Motif::Xnor => "XNOR",
-        }
-    }
-
     /// How many inputs a gene with this motif may have.
     pub const fn arity(self) -> core::ops::RangeInclusive<usize> {
         match self {
@@ -153,6 +115,7 @@ mod tests {
             (Motif::Xor, sig(0.56) + sig(0.06)),
             (Motif::Xnor, 1.0 - sig(0.56) - sig(0.06)),
         ];
+        assert_eq!(expected.map(|(motif, _)| motif), Motif::ALL, "a motif has no value to be held to");
         for (motif, value) in expected {
             let inputs = &[a, b, c][..(*motif.arity().end()).min(3)];
             let got = motif.regulation(inputs.iter().copied(), theta, k);
@@ -175,21 +138,12 @@ mod tests {
 
     #[test]
     fn opcodes_are_frozen() {
-        let codes: std::vec::Vec<_> = Motif::ALL.iter().map(|m| (m.name(), m.opcode())).collect();
-        let frozen = [
-            ("POS", 1),
-            ("NEG", 2),
-            ("AND", 3),
-            ("NAND", 4),
-            ("OR", 5),
-            ("NOR", 6),
-            ("ANDN", 7),
-            ("ORN", 8),
-            ("XOR", 9),
-            ("XNOR", 10),
-        ];
-        assert_eq!(codes, frozen);
-        assert!(Motif::ALL.iter().all(|&m| Motif::from_opcode(m.opcode()) == Some(m)));
-        assert!(Motif::from_opcode(0).is_none() && Motif::from_opcode(11).is_none());
+        let frozen = ["POS", "NEG", "AND", "NAND", "OR", "NOR", "ANDN", "ORN", "XOR", "XNOR"];
+        let names: std::vec::Vec<_> = Motif::ALL.iter().map(|motif| motif.name()).collect();
+        assert_eq!(names, frozen, "a released motif keeps its place; a new one goes to the end of this list, too");
+        for (motif, code) in Motif::ALL.into_iter().zip(1..) {
+            assert_eq!((motif.code(), Motif::from_code(code)), (code, Some(motif)));
+        }
+        assert!(Motif::from_code(0).is_none() && Motif::from_code(frozen.len() as u8 + 1).is_none());
     }
 }

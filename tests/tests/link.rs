@@ -172,7 +172,7 @@ fn requests_and_codes_that_a_robot_does_not_know_ask_for_newer_firmware() -> Out
     // A motif of a later release: the blob is sound, so writing it again would change nothing.
     let model = Shipped::named("nand-xnor");
     let payload = &model.bytes[15..model.bytes.len() - 4];
-    let motif = payload.iter().position(|&byte| byte == Motif::Nand.opcode()).ok_or("no NAND")?;
+    let motif = payload.iter().position(|&byte| byte == Motif::Nand.code()).ok_or("no NAND")?;
     let mut newer = payload.to_vec();
     newer[motif] = 99;
     let newer = sealed(&newer);

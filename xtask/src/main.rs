@@ -85,6 +85,7 @@ fn test() -> bool {
         cargo_test(&["test", "--package", "grn-core", "--features", "micromath", "--no-fail-fast"], &mut tally),
         images(false, &mut tally),
         c_library(false, &mut tally),
+        cargo(&["doc", "--workspace", "--no-deps", "--quiet"], &[("RUSTDOCFLAGS", "-D warnings")]),
     ];
     tally.close(succeeded.into_iter().all(|success| success))
 }

@@ -27,17 +27,10 @@ pub(super) struct ScenarioFile {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MorphogenTable {
-    kernel: KernelName,
+    kernel: Kernel,
     target_width: f64,
     obstacle_width: f64,
     level: f64,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum KernelName {
-    Gaussian,
-    Exponential,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -86,10 +79,6 @@ impl TryFrom<ScenarioFile> for Scenario {
         limits::check_name(&name)?;
         let snapshots = limits::check_region(region, snapshots)?;
         let MorphogenTable { kernel, target_width, obstacle_width, level } = morphogen;
-        let kernel = match kernel {
-            KernelName::Gaussian => Kernel::Gaussian,
-            KernelName::Exponential => Kernel::Exponential,
-        };
         let morphogen = Morphogen { kernel, target_width, obstacle_width, level };
         limits::check_morphogen(&morphogen)?;
         let RingTable { d_min, d_max, d_obstacle, steepness } = ring;
@@ -208,10 +197,6 @@ impl From<Scenario> for ScenarioFile {
         let raw = |points: &[Point<f64>]| points.iter().map(|p| Pair([p.x, p.y])).collect();
         let Morphogen { kernel, target_width, obstacle_width, level } = scenario.morphogen;
         let Ring { d_min, d_max, d_obstacle, steepness } = scenario.ring;
-        let kernel = match kernel {
-            Kernel::Gaussian => KernelName::Gaussian,
-            Kernel::Exponential => KernelName::Exponential,
-        };
         ScenarioFile {
             name: scenario.name,
             region: Pair(scenario.region),
@@ -228,10 +213,6 @@ impl ScenarioFile {
     /// Text in the layout of the scenarios a person writes: one line a path or polygon, shortest exact numbers.
     pub(super) fn to_toml(&self) -> String {
         let mut text = String::new();
-        let kernel = match self.morphogen.kernel {
-            KernelName::Gaussian => Kernel::Gaussian,
-            KernelName::Exponential => Kernel::Exponential,
-        };
         let name = toml::Value::String(self.name.clone());
         let MorphogenTable { target_width, obstacle_width, level, .. } = self.morphogen;
         let RingTable { d_min, d_max, d_obstacle, steepness } = self.ring;
@@ -244,7 +225,7 @@ impl ScenarioFile {
              [ring]\nd_min = {d_min:?}\nd_max = {d_max:?}\nd_obstacle = {d_obstacle:?}\nsteepness = {steepness:?}\n",
             self.region.0,
             self.snapshots,
-            kernel.name(),
+            self.morphogen.kernel.name(),
         );
         let raw = |points: &[Pair]| points.iter().map(|pair| pair.0).collect::<Vec<_>>();
         for TargetTable { path } in &self.targets {

@@ -267,7 +267,7 @@ fn bad_blobs_are_refused_each_with_what_to_do() {
     });
     // A motif of a later release, in an envelope without a fault.
     let mut payload = good[15..good.len() - 4].to_vec();
-    let motif = payload.iter().position(|&byte| byte == Motif::Nand.opcode()).unwrap();
+    let motif = payload.iter().position(|&byte| byte == Motif::Nand.code()).unwrap();
     payload[motif] = 99;
     let mut unknown_motif = [&good[..7], &sha2::Sha256::digest(&payload)[..8], &payload].concat();
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&unknown_motif);

@@ -11,6 +11,8 @@ pub mod board;
 #[allow(unsafe_code, reason = "a function that does not exist is declared and called")]
 mod panic;
 #[cfg(target_abi = "eabihf")]
+pub mod port;
+#[cfg(target_abi = "eabihf")]
 pub mod robot;
 #[cfg(target_abi = "eabihf")]
 pub mod session;

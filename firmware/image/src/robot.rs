@@ -2,19 +2,10 @@
 
 use crate::board::print;
 use crate::board::slots::{SLOT, SlotMemory};
+use crate::port::Port;
 use grn_core::robot::link::Server;
 use grn_core::robot::slots::Layout;
 use grn_core::scalar::{NumberType, Scalar};
-
-/// What carries a robot's bytes.
-pub trait Port {
-    /// Gets ready; bytes that arrive before are lost.
-    fn start(&mut self);
-    /// Waits for the next byte; `None` if none will ever come.
-    fn read(&mut self) -> Option<u8>;
-    /// Sends all bytes.
-    fn write(&mut self, bytes: &[u8]);
-}
 
 /// Serves the link while bytes come; false if the slots cannot be used.
 pub fn serve<S: Scalar>(number_type: NumberType, slots: SlotMemory, port: &mut impl Port) -> bool {

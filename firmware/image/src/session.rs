@@ -7,7 +7,8 @@
 
 use crate::board::slots::SlotMemory;
 use crate::board::{print, stack_used};
-use crate::robot::{Port, serve};
+use crate::port::Port;
+use crate::robot::serve;
 use crate::text::decimal;
 use core::ops::ControlFlow;
 use grn_core::blob::Identity;

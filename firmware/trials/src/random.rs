@@ -73,7 +73,7 @@ pub fn blob(seed: u32) -> Option<Blob> {
 }
 
 fn gene(index: u32, random: &mut Random) -> Gene<f32> {
-    let motif = Motif::from_opcode(1 + random.below(Motif::ALL.len() as u32) as u8).unwrap_or(Motif::Pos);
+    let motif = Motif::from_code(1 + random.below(Motif::ALL.len() as u32) as u8).unwrap_or(Motif::Pos);
     let arity = motif.arity();
     let inputs = random.between(*arity.start() as i32, *arity.end() as i32);
     Gene {

@@ -90,7 +90,7 @@ fn each_fault_of_the_payload_is_named() {
     assert_eq!(with(0, &[9]), BlobError::Convention(9));
     assert_eq!(with(2, &[11]), BlobError::Opcode { gene: 0, opcode: 11 });
     let arity = NetworkError::Arity { gene: 0, motif: Motif::Pos, inputs: 2 };
-    assert_eq!(with(2, &[Motif::Pos.opcode()]), BlobError::Network(arity));
+    assert_eq!(with(2, &[Motif::Pos.code()]), BlobError::Network(arity));
     assert_eq!(with(4, &[2]), BlobError::Network(NetworkError::NotFeedForward { gene: 0, reads: 0 }));
     assert!(matches!(with(9, &[0x7f]), BlobError::Network(NetworkError::Theta { gene: 0, .. })));
     assert_eq!(with(22, &[3]), BlobError::Kernel(3));

@@ -62,7 +62,7 @@ impl<const N: usize> Payload<N> {
 
     pub(super) fn of(blob: &Blob<N>) -> Self {
         let genes = blob.network.genes().iter().map(|gene| WireGene {
-            opcode: gene.motif.opcode(),
+            opcode: gene.motif.code(),
             inputs: filled(gene.inputs.iter().map(|input| input.code())),
             theta: gene.theta,
         });
@@ -70,7 +70,7 @@ impl<const N: usize> Payload<N> {
             convention: CONVENTION,
             genes: filled(genes),
             steepness: blob.network.steepness(),
-            kernel: blob.field.kernel as u8,
+            kernel: blob.field.kernel.code(),
             target_width: blob.field.target_width,
             obstacle_width: blob.field.obstacle_width,
             level_fraction: blob.level_fraction,
@@ -91,13 +91,13 @@ impl<const N: usize> Payload<N> {
     /// The blob, whose parameters may still be out of range.
     #[inline(never)]
     pub(super) fn to_blob(&self) -> Result<Blob<N>, BlobError> {
-        let unknown = self.genes.iter().enumerate().find(|(_, gene)| Motif::from_opcode(gene.opcode).is_none());
+        let unknown = self.genes.iter().enumerate().find(|(_, gene)| Motif::from_code(gene.opcode).is_none());
         if let Some((index, gene)) = unknown {
             return Err(BlobError::Opcode { gene: index, opcode: gene.opcode });
         }
         let genes = self.genes.iter().filter_map(|gene| {
             Some(Gene {
-                motif: Motif::from_opcode(gene.opcode)?,
+                motif: Motif::from_code(gene.opcode)?,
                 inputs: filled(gene.inputs.iter().map(|&code| Source::from_code(code))),
                 theta: gene.theta,
             })

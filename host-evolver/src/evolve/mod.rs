@@ -4,6 +4,7 @@ pub mod eh_grn;
 mod front;
 mod individual;
 pub mod objective;
+mod objectives;
 mod ranking;
 mod search;
 mod settings;
@@ -11,7 +12,8 @@ mod state;
 
 pub use front::{FrontMember, REFERENCE, deployed, front_hypervolume};
 pub use individual::Individual;
-pub use objective::{Objective, Objectives};
+pub use objective::Objective;
+pub use objectives::{Objectives, ObjectivesError};
 pub use search::{Advance, Search};
 pub use settings::{DeSettings, Settings, SettingsError};
 pub use state::{Milestone, State};

@@ -1,6 +1,6 @@
 //! What decides a run besides the scenario.
 
-use super::objective::Objectives;
+use super::objectives::Objectives;
 use crate::model::variation::MotifSet;
 use grn_optimisers::de;
 use serde::{Deserialize, Serialize};

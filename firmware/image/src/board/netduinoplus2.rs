@@ -22,7 +22,7 @@ impl Register {
 /// USART1, the emulator's first serial port, byte by byte.
 pub mod uart {
     use super::Register;
-    use crate::robot::Port;
+    use crate::port::Port;
 
     const STATUS: Register = Register::at(0x4001_1000);
     const DATA: Register = Register::at(0x4001_1004);

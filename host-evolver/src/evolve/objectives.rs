@@ -1,69 +1,9 @@
-//! What the search minimises.
-//!
-//! A further objective is a type that implements [`Objective`] in a file of its own and a line in [`ALL`]. It then can be
-//! asked for by its name, is computed once for every individual, and has its column in every file and figure.
+//! The objectives of a run.
 
-use crate::evaluation::{Evaluation, Model, World};
-use crate::model::tree::Tree;
+use super::objective::{ALL, Candidate, Nodes, Objective, RingError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
-
-/// What an objective is computed from: a model whose θ have been tuned, seen once.
-#[derive(Clone, Copy)]
-pub struct Candidate<'a> {
-    /// The tree with its θ.
-    pub tree: &'a Tree,
-    /// The model that its blob holds; `None` if it has no pattern.
-    pub model: Option<&'a Model>,
-    /// The paper's f2 and the constraint violation in the world.
-    pub evaluation: Evaluation,
-    /// The world it was evaluated in.
-    pub world: &'a World,
-}
-
-/// Something to be minimised.
-pub trait Objective: Sync {
-    /// Its name on the command line, in files and in figures: lower case, digits, hyphens.
-    fn name(&self) -> &'static str;
-    /// What it measures and its unit, for people.
-    fn description(&self) -> &'static str;
-    /// Its value, less is better.
-    fn value(&self, candidate: &Candidate<'_>) -> f64;
-}
-
-/// All objectives, the paper's first.
-pub const ALL: &[&'static dyn Objective] = &[&Nodes, &RingError];
-
-/// f1: nodes of the tree, functions and terminals.
-pub struct Nodes;
-
-impl Objective for Nodes {
-    fn name(&self) -> &'static str {
-        "nodes"
-    }
-    fn description(&self) -> &'static str {
-        "complexity f1, nodes of the tree"
-    }
-    fn value(&self, candidate: &Candidate<'_>) -> f64 {
-        candidate.tree.size() as f64
-    }
-}
-
-/// f2: how far the ring is from the wanted distances, averaged over snapshots; in [0, 2].
-pub struct RingError;
-
-impl Objective for RingError {
-    fn name(&self) -> &'static str {
-        "f2"
-    }
-    fn description(&self) -> &'static str {
-        "the paper's pattern error f2"
-    }
-    fn value(&self, candidate: &Candidate<'_>) -> f64 {
-        candidate.evaluation.f2
-    }
-}
 
 /// The objectives of a run: two or three different ones, in the order in which they were asked for.
 #[derive(Clone, Serialize, Deserialize)]

@@ -1,5 +1,6 @@
 //! The C library's examples, compiled and run: on this machine, and on a bare Cortex-M4F in QEMU.
 
+use crate::c_package;
 use crate::tally::Tally;
 use crate::target::golden::Golden;
 use crate::target::tools::{self, Compiler};
@@ -24,7 +25,7 @@ pub fn check(bless: bool, tally: &mut Tally) {
     let ready = tools::emulators(&["qemu-system-arm"])
         .and_then(|()| tools::programs(&TOOLS))
         .and_then(|()| Compiler::find(&[TARGET]));
-    let checks: Vec<(&str, Result<(), String>)> = match ready {
+    let mut checks: Vec<(&str, Result<(), String>)> = match ready {
         Err(error) => vec![("compilers and emulator are there", Err(error))],
         Ok(compiler) => {
             let chip = compiler.environment(TARGET);
@@ -40,6 +41,7 @@ pub fn check(bless: bool, tally: &mut Tally) {
             ]
         }
     };
+    checks.extend(c_package::checks());
     for (name, outcome) in checks {
         println!("test C: {name} ... {}", if outcome.is_ok() { "ok" } else { "FAILED" });
         match outcome {

@@ -100,7 +100,8 @@ impl Percept {
     /// [`PerceptError`].
     pub fn check(&self) -> Result<(), PerceptError> {
         let Percept { position, heading, .. } = *self;
-        if !position.iter().all(|coordinate| (-MAX_POSITION..=MAX_POSITION).contains(coordinate)) {
+        let [east, north] = position.map(i32::unsigned_abs);
+        if east.max(north) > MAX_POSITION as u32 {
             return Err(PerceptError::Position { position });
         }
         const SHORTEST: u32 = (HEADING_UNIT - HEADING_TOLERANCE) as u32;

@@ -24,13 +24,12 @@
 
 use core::hint::black_box;
 use grn_core::blob::Blob;
-use grn_core::bounded::filled;
 use grn_core::dynamics::{Expression, Step};
 use grn_core::geometry::{Point, Vector};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::Pattern;
 use grn_core::robot::radio::packed::{self, Packed};
-use grn_core::robot::radio::{Assembler, Fragment, Fragments};
+use grn_core::robot::radio::{Assembler, Fragments};
 use grn_core::robot::{Controller, Percept};
 use grn_core::scalar::{Dual, Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
@@ -85,20 +84,13 @@ fn measure_radio() -> bool {
     show("read", instructions(&mut || unpacked = black_box(packed::read(black_box(&packed)).ok())));
     let mut all_arrived = unpacked.as_ref() == Some(message);
     for (payload, cut, put_together) in [(20, "cut-20", "put-together-20"), (2, "cut-2", "put-together-2")] {
-        let mut pieces: Vec<Fragment, 64> = Vec::new();
-        let mut cutting = || {
-            let fragments = Fragments::new(black_box(message), payload, 1);
-            pieces = black_box(filled(fragments.into_iter().flatten()));
-        };
-        show(cut, instructions(&mut cutting));
+        let fragments = || Fragments::new(black_box(message), payload, 1).into_iter().flatten();
+        show(cut, instructions(&mut || fragments().for_each(|piece| _ = black_box(piece))));
         let mut assembler = Assembler::new();
         let mut heard = None;
-        let mut hearing = || {
-            for piece in &pieces {
-                heard = black_box(assembler.receive(0, black_box(piece)));
-            }
-        };
-        show(put_together, instructions(&mut hearing));
+        let hearing = |piece| instructions(&mut || heard = black_box(assembler.receive(0, black_box(&piece))));
+        let count = fragments().map(hearing).sum();
+        show(put_together, count);
         all_arrived &= heard.as_ref() == Some(message);
     }
     all_arrived

@@ -77,7 +77,9 @@ impl Fragments {
         let data = pair >> (self.next * SMALL_DATA % 8) & u16::from(PLACE);
         let number = u16::from(self.number & 1);
         let bits = data | (self.next as u16) << 6 | number << 12 | u16::from(sender?) << 13;
-        Some(bits.to_le_bytes().into_iter().collect())
+        let mut fragment = Fragment::new();
+        fragment.extend_from_slice(&bits.to_le_bytes()).ok()?;
+        Some(fragment)
     }
 
     fn large(&self) -> Option<Fragment> {

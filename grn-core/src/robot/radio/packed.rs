@@ -76,18 +76,20 @@ pub fn write(message: &Message) -> Packed {
     let Message { sender, position, target, obstacles } = message;
     let flag = if target.is_some() { HAS_TARGET } else { 0 };
     let first = PACKED_VERSION << VERSION_SHIFT | flag | obstacles.len() as u8;
+    let mut packed = Packed::new();
+    // There is room for the longest message.
+    let mut put = |bytes: &[u8]| _ = packed.extend_from_slice(bytes);
     let [x0, x1, y0, y1] = bytes_of(*position);
-    let target = target.iter().flat_map(|&TargetReport { target, position, velocity: [east, north], age }| {
+    put(&[first, *sender, x0, x1, y0, y1]);
+    if let Some(TargetReport { target, position, velocity: [east, north], age }) = *target {
         let [x0, x1, y0, y1] = bytes_of(position);
-        [target, x0, x1, y0, y1, east as u8, north as u8, age]
-    });
-    let obstacles = obstacles.iter().flat_map(|&ObstacleReport { position, age }| {
+        put(&[target, x0, x1, y0, y1, east as u8, north as u8, age]);
+    }
+    for &ObstacleReport { position, age } in obstacles {
         let [x0, x1, y0, y1] = bytes_of(position);
-        [x0, x1, y0, y1, age]
-    });
-    let mut packed: Packed = filled([first, *sender, x0, x1, y0, y1].into_iter().chain(target).chain(obstacles));
+        put(&[x0, x1, y0, y1, age]);
+    }
     let crc = CRC.checksum(&packed).to_le_bytes();
-    // There is room for it.
     let _ = packed.extend_from_slice(&crc);
     packed
 }

@@ -31,6 +31,18 @@ pub struct SwarmConfig {
     pub radio: RadioConfig,
     /// Sensor noise.
     pub noise: Noise,
+    /// Robots that break down during the run; none by default.
+    pub stops: Vec<Stop>,
+}
+
+/// A robot that breaks down: from a tick on its wheels stand still and it neither sends nor computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stop {
+    /// Which one, below the number of robots.
+    pub robot: usize,
+    /// The first tick without it.
+    pub tick: u64,
 }
 
 impl Default for SwarmConfig {
@@ -47,6 +59,7 @@ impl Default for SwarmConfig {
             variation: 0.0,
             radio: RadioConfig::default(),
             noise: Noise::default(),
+            stops: Vec::new(),
         }
     }
 }
@@ -64,8 +77,18 @@ impl SwarmConfig {
             let fault = || ConfigError { field, value: value.to_string(), expected: expected.to_owned() };
             if value.is_finite() && right { Ok(()) } else { Err(fault()) }
         };
-        let SwarmConfig { robots, mothers, seed: _, scale, target_speed_m_per_s, settle_s, variation, radio, noise } =
-            *self;
+        let &SwarmConfig {
+            robots,
+            mothers,
+            seed: _,
+            scale,
+            target_speed_m_per_s,
+            settle_s,
+            variation,
+            radio,
+            noise,
+            ref stops,
+        } = self;
         whole("robots", robots, (1..=MAX_ROBOTS).contains(&robots), format!("must be in 1..={MAX_ROBOTS}"))?;
         whole("mothers", mothers, (1..=robots).contains(&mothers), format!("must be in 1..={robots} (robots)"))?;
         real("scale", scale, scale > 0.0 && scale <= 10.0, "must be above 0 and at most 10")?;
@@ -87,7 +110,16 @@ impl SwarmConfig {
         {
             real(field, value, (0.0..=1.0).contains(&value), "must be 0 to 1 metre")?;
         }
-        real("noise.heading_deg", heading_deg, (0.0..45.0).contains(&heading_deg), "must be 0 to below 45 degrees")
+        real("noise.heading_deg", heading_deg, (0.0..45.0).contains(&heading_deg), "must be 0 to below 45 degrees")?;
+        stops.iter().try_for_each(|stop| {
+            whole("stops.robot", stop.robot, stop.robot < robots, format!("must be below {robots} (robots)"))
+        })
+    }
+
+    /// For every robot the first tick in which it stands still for good, if it does.
+    pub fn stop_ticks(&self) -> Vec<Option<u64>> {
+        let first = |robot| self.stops.iter().filter(|stop| stop.robot == robot).map(|stop| stop.tick).min();
+        (0..self.robots).map(first).collect()
     }
 }
 
@@ -128,6 +160,7 @@ mod tests {
             (SwarmConfig { target_speed_m_per_s: 0.2, ..good.clone() }, "target_speed_m_per_s", "0.2"),
             (SwarmConfig { settle_s: -1.0, ..good.clone() }, "settle_s", "-1"),
             (SwarmConfig { variation: 0.3, ..good.clone() }, "variation", "0.3"),
+            (SwarmConfig { stops: vec![Stop { robot: 20, tick: 0 }], ..good.clone() }, "stops.robot", "20"),
             (radio(0.0, 0.1), "radio.range_m", "0"),
             (radio(0.7, 1.5), "radio.loss", "1.5"),
             (

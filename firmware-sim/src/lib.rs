@@ -41,7 +41,7 @@ pub mod swarm;
 pub mod trace;
 
 pub use brain::{Brain, BrainError};
-pub use config::{ConfigError, SwarmConfig};
+pub use config::{ConfigError, Stop, SwarmConfig};
 pub use metrics::{Metrics, MetricsOptions};
 pub use scenario::{InputError, Scenario};
 pub use swarm::{Outcome, Progress, StepError, Swarm};

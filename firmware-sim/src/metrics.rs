@@ -1,27 +1,31 @@
 //! What a recorded run is worth: encirclement, distance from the pattern, contacts, clearance and spacing.
 
+mod whereabouts;
+
 use crate::geometry::{Walls, length_squared};
-use crate::trace::{Frame, Trace, metres};
+use crate::trace::{RobotState, Trace, metres};
 use core::f64::consts::{PI, TAU};
 use grn_core::geometry::Point;
 use serde::{Deserialize, Serialize};
+use whereabouts::Whereabouts;
+pub use whereabouts::{LEFT_AFTER_S, NEAR_TARGET, ON_PATTERN};
 
 /// A target is encircled while every gap between neighbouring robots' bearings about it is below this, degrees.
 pub const MAX_GAP_DEG: f64 = 90.0;
 /// The swarm has formed once every target stays encircled for this long, seconds.
 pub const FORMED_FOR_S: f64 = 2.0;
 
-/// How metrics are taken.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MetricsOptions {
-    /// Only robots within this distance of a target, metres, count as encircling it; by default infinite, so all do.
-    pub reach_m: f64,
-}
-
-impl Default for MetricsOptions {
-    fn default() -> Self {
-        MetricsOptions { reach_m: f64::INFINITY }
-    }
+/// What metrics need to know besides the trace.
+#[derive(Clone, Debug)]
+pub struct MetricsOptions<'a> {
+    /// Walls, in real metres, as the trace is.
+    pub walls: &'a Walls,
+    /// Radius of the pattern around a lone target in free space, real metres.
+    pub ring_radius_m: f64,
+    /// For every robot the tick from which on it is broken down, if it is, as from
+    /// [`SwarmConfig::stop_ticks`](crate::config::SwarmConfig::stop_ticks); robots beyond the list's end never are. A
+    /// broken robot counts only as something that others may touch.
+    pub stop_ticks: &'a [Option<u64>],
 }
 
 /// The measures of one run. "After forming" is from [`formed_at_s`](Metrics::formed_at_s) to the end; what needs a
@@ -40,12 +44,18 @@ pub struct Metrics {
     pub encircled_share_of_run: f64,
     /// The largest angular gap about any target after forming, degrees.
     pub largest_gap_deg: Option<f64>,
-    /// Median distance of robots from the pattern over robots and moments after forming, metres.
+    /// Median distance of robots from the pattern over robots and moments after forming, metres; an unknown distance is
+    /// longer than any other, and `None` if it is the median.
     pub radial_error_median_m: Option<f64>,
-    /// Its 95th percentile.
+    /// Its 95th percentile, likewise.
     pub radial_error_p95_m: Option<f64>,
-    /// Share of robots and moments after forming for which the pattern distance was known.
-    pub radial_error_known_share: Option<f64>,
+    /// Share of robots and moments after forming for which the distance from the pattern is unknown.
+    pub radial_error_unknown_share: Option<f64>,
+    /// Robots that are off the pattern (see [`ON_PATTERN`]) at the end of the run, for [`LEFT_AFTER_S`] already or since the
+    /// start.
+    pub lost_robots: usize,
+    /// Robots that were off the pattern for [`LEFT_AFTER_S`] after they had reached it, and came back.
+    pub strayed_robots: usize,
     /// How often a robot began to touch a wall.
     pub wall_contacts: u64,
     /// How often a pair of robots began to touch.
@@ -103,13 +113,11 @@ pub fn encircles(largest_gap: f64) -> bool {
 }
 
 impl Metrics {
-    /// Measures a run. `walls` are in real metres, as the trace is. `pattern_distance` gives the distance (metres) of a
-    /// position from the pattern that belongs to these targets' positions, or `None` where it is not known; it is only
-    /// asked about moments after forming.
+    /// Measures a run. `pattern_distance` gives the distance (metres) of a position from the pattern that belongs to these
+    /// targets' positions, or `None` where it is not known.
     pub fn of(
         trace: &Trace,
-        walls: &Walls,
-        options: &MetricsOptions,
+        options: &MetricsOptions<'_>,
         mut pattern_distance: impl FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>,
     ) -> Metrics {
         let per_second = f64::from(trace.header().ticks_per_second.max(1));
@@ -122,18 +130,32 @@ impl Metrics {
         let whole_run = share(moments().filter(all).count(), trace.len());
 
         let after = formed.unwrap_or(trace.len());
-        let mut known = Errors::default();
+        let mut errors = Errors::default();
         let mut evenness = Mean::default();
-        let mut bearings = Vec::with_capacity(usize::from(trace.header().robots));
+        let mut robots = vec![Whereabouts::default(); usize::from(trace.header().robots)];
+        let left_after = (LEFT_AFTER_S * per_second).ceil() as usize;
+        let mut bearings = Vec::with_capacity(robots.len());
         let mut here: Vec<Point<f64>> = Vec::with_capacity(targets);
-        for frame in trace.frames().skip(after) {
+        for (tick, frame) in trace.frames().enumerate() {
             here.clear();
             here.extend(frame.targets_um.iter().map(|&target| metres(target)));
-            for robot in frame.robots {
-                known.add(pattern_distance(metres(robot.position_um), &here));
+            for (robot, position) in options.working(tick, frame.robots) {
+                let distance = pattern_distance(position, &here).filter(|distance| !distance.is_nan());
+                let on_pattern = distance.is_some_and(|distance| distance < ON_PATTERN * options.ring_radius_m);
+                let reach = NEAR_TARGET * options.ring_radius_m;
+                let near_target = || here.iter().any(|&target| length_squared(position - target) < reach * reach);
+                robots[robot].observe(on_pattern || near_target(), left_after);
+                if tick >= after {
+                    errors.add(distance);
+                }
             }
-            spacing(&frame, &here, &mut bearings, &mut evenness);
+            if tick >= after {
+                let positions = || options.working(tick, frame.robots).map(|(_, position)| position);
+                spacing(positions, &here, &mut bearings, &mut evenness);
+            }
         }
+        let works_to_the_end = |robot: &usize| !options.is_stopped(*robot, trace.len().saturating_sub(1));
+        let working = || (0..robots.len()).filter(works_to_the_end).filter_map(|robot| robots.get(robot));
 
         let mut counts = [0u64; 4];
         for contacts in trace.frames().map(|frame| frame.contacts) {
@@ -153,30 +175,41 @@ impl Metrics {
             encircled_share_by_target: formed.map(|_| (0..targets).map(of_target).collect()),
             encircled_share_of_run: whole_run,
             largest_gap_deg: formed.map(|_| formed_moments().flatten().copied().fold(0.0, f64::max).to_degrees()),
-            radial_error_known_share: formed.map(|_| known.known_share()),
-            radial_error_median_m: known.percentile(50),
-            radial_error_p95_m: known.percentile(95),
+            radial_error_median_m: errors.percentile(50),
+            radial_error_p95_m: errors.percentile(95),
+            radial_error_unknown_share: formed.map(|_| errors.unknown_share()),
+            lost_robots: working().filter(|robot| robot.is_lost(left_after)).count(),
+            strayed_robots: working().filter(|robot| robot.has_strayed(left_after)).count(),
             wall_contacts: counts[0],
             peer_contacts: counts[1],
             wall_contact_s: counts[2] as f64 / per_second,
             peer_contact_s: counts[3] as f64 / per_second,
-            min_wall_clearance_m: min_clearance(positions, walls),
+            min_wall_clearance_m: min_clearance(positions, options.walls),
             spacing_evenness: evenness.get(),
         }
     }
 }
 
+impl MetricsOptions<'_> {
+    fn is_stopped(&self, robot: usize, tick: usize) -> bool {
+        self.stop_ticks.get(robot).copied().flatten().is_some_and(|stop| tick as u64 >= stop)
+    }
+
+    /// The robots that are not broken down, with their positions in metres.
+    fn working<'a>(&'a self, tick: usize, robots: &'a [RobotState]) -> impl Iterator<Item = (usize, Point<f64>)> + 'a {
+        let working = robots.iter().enumerate().filter(move |&(robot, _)| !self.is_stopped(robot, tick));
+        working.map(|(robot, state)| (robot, metres(state.position_um)))
+    }
+}
+
 /// The largest gap, radians, per frame and target.
-fn gap_table(trace: &Trace, options: &MetricsOptions) -> Vec<f64> {
+fn gap_table(trace: &Trace, options: &MetricsOptions<'_>) -> Vec<f64> {
     let mut bearings = Vec::with_capacity(usize::from(trace.header().robots));
     let mut table = Vec::with_capacity(trace.len() * usize::from(trace.header().targets));
-    let limit = options.reach_m * options.reach_m;
-    for frame in trace.frames() {
+    for (tick, frame) in trace.frames().enumerate() {
         for &target in frame.targets_um {
-            let target = metres(target);
-            let robots = frame.robots.iter().map(|robot| metres(robot.position_um));
-            let near = robots.filter(|&robot| length_squared(robot - target) <= limit);
-            table.push(largest_gap(target, near, &mut bearings));
+            let robots = options.working(tick, frame.robots).map(|(_, position)| position);
+            table.push(largest_gap(metres(target), robots, &mut bearings));
         }
     }
     table
@@ -199,14 +232,18 @@ fn share(count: usize, of: usize) -> f64 {
 }
 
 /// Adds the evenness about every target, of the robots that are nearer to it than to the others.
-fn spacing(frame: &Frame<'_>, targets: &[Point<f64>], bearings: &mut Vec<f64>, mean: &mut Mean) {
+fn spacing<R: Iterator<Item = Point<f64>>>(
+    robots: impl Fn() -> R,
+    targets: &[Point<f64>],
+    bearings: &mut Vec<f64>,
+    mean: &mut Mean,
+) {
     for (index, &target) in targets.iter().enumerate() {
         let nearest = |robot: Point<f64>| {
             let distances = targets.iter().map(|&other| length_squared(robot - other));
             distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(nearest, _)| nearest)
         };
-        let robots = frame.robots.iter().map(|robot| metres(robot.position_um));
-        collect_bearings(target, robots.filter(|&robot| nearest(robot) == Some(index)), bearings);
+        collect_bearings(target, robots().filter(|&robot| nearest(robot) == Some(index)), bearings);
         if let Some(value) = evenness(bearings) {
             mean.sum += value;
             mean.count += 1;
@@ -245,8 +282,8 @@ impl Mean {
 #[derive(Default)]
 struct Errors {
     bins: Vec<u64>,
-    known: u64,
-    asked: u64,
+    unknown: u64,
+    count: u64,
 }
 
 impl Errors {
@@ -255,23 +292,25 @@ impl Errors {
     const MAX: usize = 1_000_000;
 
     fn add(&mut self, distance: Option<f64>) {
-        self.asked += 1;
-        let Some(distance) = distance.filter(|distance| !distance.is_nan()) else { return };
+        self.count += 1;
+        let Some(distance) = distance else {
+            self.unknown += 1;
+            return;
+        };
         let bin = ((distance.abs() / Self::BIN) as usize).min(Self::MAX);
         if bin >= self.bins.len() {
             self.bins.resize(bin + 1, 0);
         }
         self.bins[bin] += 1;
-        self.known += 1;
     }
 
-    fn known_share(&self) -> f64 {
-        if self.asked == 0 { 0.0 } else { self.known as f64 / self.asked as f64 }
+    fn unknown_share(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.unknown as f64 / self.count as f64 }
     }
 
-    /// The middle of the bin that holds the nearest-rank percentile, metres.
+    /// The middle of the bin that holds the nearest-rank percentile, metres; `None` if that is an unknown distance.
     fn percentile(&self, percent: u64) -> Option<f64> {
-        let rank = (self.known * percent).div_ceil(100).max(1);
+        let rank = (self.count * percent).div_ceil(100).max(1);
         let mut passed = 0;
         self.bins
             .iter()

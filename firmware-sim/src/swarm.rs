@@ -76,6 +76,8 @@ pub struct Swarm<B> {
     samples: Vec<Point<f64>>,
     wall_index: WallIndex,
     brains: Vec<B>,
+    /// The first tick without a robot, if it breaks down.
+    stop_ticks: Vec<Option<u64>>,
     drives: Vec<Drive>,
     poses: Vec<Pose>,
     positions: Vec<Point<f64>>,
@@ -152,6 +154,7 @@ impl<B: Brain> Swarm<B> {
         let mut swarm = Swarm {
             wall_index: WallIndex::new(world.walls(), WALL_REACH),
             brains: (0..n).map(&mut brain).collect(),
+            stop_ticks: config.stop_ticks(),
             drives: drives.collect(),
             positions: poses.iter().map(|pose| pose.position).collect(),
             poses,
@@ -304,6 +307,10 @@ impl<B: Brain> Swarm<B> {
 
     /// One robot's percept and its brain's answer.
     fn think(&mut self, robot: usize) -> Result<(), StepError> {
+        if self.stop_ticks[robot].is_some_and(|stop| self.tick >= stop) {
+            self.wheels[robot] = [0, 0];
+            return Ok(());
+        }
         let (pose, noise, stream) = (&self.poses[robot], &self.config.noise, &mut self.noise[robot]);
         let (position, heading) = localise(pose, noise, stream);
         let proximity = ProximityRing::quantised(&self.free[robot], noise.proximity_m, stream);

@@ -5,6 +5,7 @@
 
 use crate::coded::coded;
 use crate::scalar::Arithmetic;
+use core::fmt;
 
 /// The most inputs a gene can have (OR and NOR).
 pub const MAX_INPUTS: usize = 4;
@@ -41,7 +42,7 @@ impl Motif {
         match self {
             Motif::Pos | Motif::Neg => 1..=1,
             Motif::Or | Motif::Nor => 2..=MAX_INPUTS,
-            _ => 2..=2,
+            Motif::And | Motif::Nand | Motif::Andn | Motif::Orn | Motif::Xor | Motif::Xnor => 2..=2,
         }
     }
 
@@ -69,19 +70,29 @@ impl Motif {
         }
     }
 
-    /// The same function as text, in the paper's notation; `a`, `b`, … are the operands.
-    pub const fn formula(self) -> &'static str {
+    /// Writes the same function as text, in the paper's notation, over the names of the operands; a missing one is 0.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn write_formula(
+        self,
+        out: &mut impl fmt::Write,
+        operands: &[impl fmt::Display],
+        theta: impl fmt::Display,
+    ) -> fmt::Result {
+        let (a, b) = (Operand(operands.first()), Operand(operands.get(1)));
+        let sum = Sum(operands);
         match self {
-            Motif::Pos => "sig(a, θ)",
-            Motif::Neg => "1 - sig(a, θ)",
-            Motif::And => "sig(a*b, θ)",
-            Motif::Nand => "1 - sig(a*b, θ)",
-            Motif::Or => "sig(a + b + …, θ)",
-            Motif::Nor => "1 - sig(a + b + …, θ)",
-            Motif::Andn => "sig(a*(1 - b), θ)",
-            Motif::Orn => "sig(a + (1 - b), θ)",
-            Motif::Xor => "sig(a*(1 - b), θ) + sig((1 - a)*b, θ)",
-            Motif::Xnor => "1 - sig(a*(1 - b), θ) - sig((1 - a)*b, θ)",
+            Motif::Pos => write!(out, "sig({a}, {theta})"),
+            Motif::Neg => write!(out, "1 - sig({a}, {theta})"),
+            Motif::And => write!(out, "sig({a}*{b}, {theta})"),
+            Motif::Nand => write!(out, "1 - sig({a}*{b}, {theta})"),
+            Motif::Or => write!(out, "sig({sum}, {theta})"),
+            Motif::Nor => write!(out, "1 - sig({sum}, {theta})"),
+            Motif::Andn => write!(out, "sig({a}*(1 - {b}), {theta})"),
+            Motif::Orn => write!(out, "sig({a} + (1 - {b}), {theta})"),
+            Motif::Xor => write!(out, "sig({a}*(1 - {b}), {theta}) + sig((1 - {a})*{b}, {theta})"),
+            Motif::Xnor => write!(out, "1 - sig({a}*(1 - {b}), {theta}) - sig((1 - {a})*{b}, {theta})"),
         }
     }
 
@@ -95,9 +106,48 @@ impl Motif {
     }
 }
 
+/// The name of an operand, if there is one.
+struct Operand<'a, D>(Option<&'a D>);
+
+impl<D: fmt::Display> fmt::Display for Operand<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(name) => name.fmt(f),
+            None => f.write_str("0"),
+        }
+    }
+}
+
+/// The names of operands with plus signs between them.
+struct Sum<'a, D>(&'a [D]);
+
+impl<D: fmt::Display> fmt::Display for Sum<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (place, name) in self.0.iter().enumerate() {
+            f.write_str(if place > 0 { " + " } else { "" })?;
+            name.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_formula_is_written_over_any_names() {
+        let written = |motif: Motif, operands: &[&str]| {
+            let mut text = std::string::String::new();
+            motif.write_formula(&mut text, operands, "0.5").map(|()| text)
+        };
+        // Names with letters that the formulas themselves hold.
+        assert_eq!(written(Motif::Nand, &["ab", "sigma"]).as_deref(), Ok("1 - sig(ab*sigma, 0.5)"));
+        assert_eq!(written(Motif::Nor, &["b", "a", "ba"]).as_deref(), Ok("1 - sig(b + a + ba, 0.5)"));
+        let xor = "sig(b*(1 - a), 0.5) + sig((1 - b)*a, 0.5)";
+        assert_eq!(written(Motif::Xor, &["b", "a"]).as_deref(), Ok(xor));
+        assert_eq!(written(Motif::Orn, &["b"]).as_deref(), Ok("sig(b + (1 - 0), 0.5)"));
+    }
 
     #[test]
     fn every_motif_follows_its_equation() {

@@ -99,10 +99,11 @@ impl<S: Scalar> Pattern<S> {
         Some((inner + outer).halved(1))
     }
 
-    /// The nearest candidate point: Newton steps from `start` along the gradient of the pattern error.
+    /// The nearest candidate point, metres: Newton steps from `start` along the gradient of the pattern error.
     ///
     /// Each step is at most `longest` metres and is halved while it does not bring |φ| down, so the search cannot run
-    /// away. `None` where the gradient vanishes, that is, far from every target.
+    /// away. It has converged when the step that is left is shorter than a hundredth of `longest`. `None` otherwise: far
+    /// from every target, where the gradient vanishes, or where the pattern is broken and |φ| has a minimum above 0.
     pub fn nearest_candidate<const N: usize, O: Obstacles<S> + ?Sized>(
         &self,
         network: &Network<S, N>,
@@ -111,7 +112,8 @@ impl<S: Scalar> Pattern<S> {
         obstacles: &O,
         start: Point<S>,
         longest: S,
-    ) -> Option<Candidate<S>> {
+    ) -> Option<Point<S>> {
+        let converged = longest * S::from_ratio(1, 100);
         let look = |point: Point<S>| {
             let here = field.at(point, targets.iter().copied(), obstacles);
             (self.error(network.steady_state(here.x1, here.x2)), here)
@@ -121,6 +123,9 @@ impl<S: Scalar> Pattern<S> {
         for _ in 0..NEWTON_STEPS {
             let slopes = network.steady_state_gradient(here.x1, here.x2).gradient;
             let (distance, direction) = newton_step(error, self.error_gradient(slopes, &here))?;
+            if distance.abs() < converged {
+                return Some(point + direction * distance);
+            }
             let mut step = direction * distance.clamp(-longest, longest);
             let better = (0..=BACKTRACKS).find_map(|_| {
                 let tried = look(point + step);
@@ -130,21 +135,11 @@ impl<S: Scalar> Pattern<S> {
                 }
                 falls.then_some(tried)
             });
-            let Some(found) = better else { break };
+            (error, here) = better?;
             point = point + step;
-            (error, here) = found;
         }
-        Some(Candidate { point, error })
+        None
     }
-}
-
-/// Where the search for the nearest candidate point ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Candidate<S> {
-    /// The point, metres.
-    pub point: Point<S>,
-    /// The pattern error φ left there.
-    pub error: S,
 }
 
 const NEWTON_STEPS: usize = 12;
@@ -195,8 +190,7 @@ mod tests {
             let found = pattern
                 .nearest_candidate(&network, &field, &[Vector::ZERO], nothing, Vector::new(start, 0.0), 0.5)
                 .unwrap();
-            assert!((found.point.x - ring).abs() < 1e-3 && found.point.y == 0.0, "{start}: {found:?}");
-            assert!(found.error.abs() < 1e-3);
+            assert!((found.x - ring).abs() < 1e-3 && found.y == 0.0, "{start}: {found:?}");
         }
         let gone = pattern.nearest_candidate(&network, &field, &[], nothing, Vector::ZERO, 0.5);
         assert!(gone.is_none());

@@ -1,8 +1,10 @@
-//! From models, worlds and runs to the plain data that figures are drawn from.
+//! From models, worlds and runs to the plain data that figures are drawn from, and the pictures of a folder.
 
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
-use crate::evolve::{FrontMember, Individual};
+use crate::evolve::{FrontMember, Individual, Objectives};
+use crate::files::Contents;
 use crate::model::describe;
+use crate::model::notation::Digits;
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
 use firmware_sim::metrics::largest_gap;
@@ -10,9 +12,42 @@ use firmware_sim::scenario::{Ring, Scenario};
 use firmware_sim::trace::{Frame, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
+use grn_core::network::Network;
 use grn_core::robot::epuck2::BODY_RADIUS;
-use grn_figures::{FigureError, KneeKind, Window};
+use grn_figures::{FigureError, Window};
 use grn_optimisers::knee::Knee;
+
+/// Pictures by their path in a folder, and a line on each that cannot be drawn: a picture never costs the run that it is of.
+#[derive(Default)]
+pub struct Pictures {
+    /// The pictures.
+    pub contents: Contents,
+    /// What cannot be drawn, and why.
+    pub not_drawn: Vec<String>,
+}
+
+impl Pictures {
+    /// Adds a picture under its path, which ends in `.svg`.
+    pub fn add(&mut self, name: &str, figure: Result<String, FigureError>) {
+        match figure {
+            Ok(svg) => drop(self.contents.insert(name.into(), svg.into_bytes())),
+            Err(error) => self.not_drawn.push(format!("{name} is not drawn: {error}")),
+        }
+    }
+
+    /// Adds the pages of a picture: `f2.svg`, `f2-2.svg`, ….
+    pub fn add_pages(&mut self, stem: &str, figure: Result<Vec<String>, FigureError>) {
+        match figure {
+            Ok(pages) => {
+                for (page, svg) in pages.into_iter().enumerate() {
+                    let number = if page == 0 { String::new() } else { format!("-{}", page + 1) };
+                    self.contents.insert(format!("{stem}{number}.svg"), svg.into_bytes());
+                }
+            }
+            Err(error) => self.not_drawn.push(format!("{stem}.svg is not drawn: {error}")),
+        }
+    }
+}
 
 fn pair(point: Point<f64>) -> [f64; 2] {
     [point.x, point.y]
@@ -42,8 +77,38 @@ const NEARBY_NODES: usize = 3;
 /// The front among other models of its last population, knees named, beside a perfect circle's f2.
 ///
 /// # Errors
-/// No feasible model, or numbers that cannot be drawn.
-pub fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Result<String, FigureError> {
+/// Numbers that cannot be drawn.
+pub fn front(
+    objectives: &Objectives,
+    front: &[FrontMember],
+    others: &[&Individual],
+    ring: &Ring,
+) -> Result<String, FigureError> {
+    if *objectives == Objectives::paper() { pareto(front, others, ring) } else { by_pairs(objectives, front, others) }
+}
+
+/// A front in any objectives; models without a pattern, whose values are out of all proportion, are left out.
+fn by_pairs(objectives: &Objectives, front: &[FrontMember], others: &[&Individual]) -> Result<String, FigureError> {
+    let member = |member: &FrontMember| grn_figures::ObjectivesPoint {
+        values: objectives.in_order(member.nodes as f64, member.f2, &member.further),
+        non_dominated: true,
+        feasible: member.is_feasible(),
+        knee: member.knee,
+        label: describe::expression(&member.network, Digits::None),
+    };
+    let other = |individual: &&Individual| grn_figures::ObjectivesPoint {
+        values: individual.objectives.clone(),
+        non_dominated: false,
+        feasible: individual.is_feasible(),
+        knee: Knee::default(),
+        label: individual.tree.expression(Digits::None),
+    };
+    let in_proportion = |point: &grn_figures::ObjectivesPoint| point.values.iter().all(|value| value.abs() < f64::MAX);
+    let points = front.iter().map(member).chain(others.iter().map(other)).filter(in_proportion).collect();
+    grn_figures::objectives(&grn_figures::ObjectivesFigure { labels: objectives.descriptions().collect(), points })
+}
+
+fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Result<String, FigureError> {
     let most_nodes = front.iter().map(|member| member.nodes).max().unwrap_or(0);
     let worst_f2 = front.iter().map(|member| member.f2).fold(0.0, f64::max);
     let is_near = |individual: &&&Individual| {
@@ -53,15 +118,15 @@ pub fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Res
         nodes: member.nodes as u32,
         f2: member.f2,
         feasible: member.is_feasible(),
-        knee: knee_kind(member),
-        label: describe::without_theta(&member.expression()),
+        knee: member.knee,
+        label: describe::expression(&member.network, Digits::None),
     };
     let other = |individual: &&Individual| grn_figures::ParetoPoint {
         nodes: individual.tree.size() as u32,
         f2: individual.f2,
         feasible: individual.is_feasible(),
-        knee: None,
-        label: describe::without_theta(&individual.tree.to_string()),
+        knee: Knee::default(),
+        label: individual.tree.expression(Digits::None),
     };
     let points = front.iter().map(member).chain(others.iter().filter(is_near).map(other));
     let best = perfect_circle(ring);
@@ -69,20 +134,26 @@ pub fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Res
     grn_figures::pareto(&points.collect::<Vec<_>>(), "", Some(&reference))
 }
 
-fn knee_kind(member: &FrontMember) -> Option<KneeKind> {
-    let Knee { angle, utility } = member.knee;
-    match (angle && member.is_feasible(), utility && member.is_feasible()) {
-        (true, true) => Some(KneeKind::Both),
-        (true, false) => Some(KneeKind::Angle),
-        (false, true) => Some(KneeKind::Utility),
-        (false, false) => None,
+/// The syntax tree of a network.
+pub fn tree(network: &Network<f32>) -> String {
+    match describe::syntax_tree(network) {
+        Some(tree) => grn_figures::tree(&tree),
+        None => grn_figures::nothing_to_draw(&describe::expression(network, Digits::None)),
     }
 }
 
-/// The pattern at each snapshot.
+/// The genes of a network and what they read.
 ///
 /// # Errors
-/// A scenario with more snapshots than a page holds.
+/// Numbers that cannot be drawn.
+pub fn grn(network: &Network<f32>) -> Result<String, FigureError> {
+    grn_figures::grn(&describe::graph(network))
+}
+
+/// The pattern at each snapshot; of more than 25 as many as fill a page, evenly chosen.
+///
+/// # Errors
+/// Numbers that cannot be drawn.
 pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
     const MOST_PANELS: usize = 25;
     let scenario = world.scenario();
@@ -116,7 +187,7 @@ const SAMPLES: usize = 600;
 /// A run of the swarm: where the robots went, and how well they held the pattern.
 ///
 /// # Errors
-/// A run too short to draw.
+/// Numbers that cannot be drawn.
 pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<String, FigureError> {
     let scale = f64::from(blob.scale);
     let frames: Vec<Frame<'_>> = simulation.trace.frames().collect();
@@ -129,7 +200,9 @@ pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<
         |robot: usize| sampled.iter().map(|(_, frame)| pair(metres(frame.robots[robot].position_um))).collect();
     let trajectories: Vec<Vec<[f64; 2]>> = (0..robots).map(trajectory).collect();
     let world = scenario.scaled(scale);
-    let window = window_around(trajectories.iter().flatten().copied(), 1.5 * simulation.ring_radius_m);
+    // A pattern that does not close has no radius.
+    let radius = Some(simulation.ring_radius_m).filter(|radius| radius.is_finite());
+    let window = window_around(trajectories.iter().flatten().copied(), radius.map(|radius| 1.5 * radius));
     let ruler = PatternRuler::new(blob, scenario).ok();
     grn_figures::trace(&grn_figures::TraceFigure {
         window,
@@ -141,13 +214,15 @@ pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<
         times: sampled.iter().map(|(time, _)| *time).collect(),
         gaps: gaps(&sampled, scenario.paths().len()),
         radial_error: sampled.iter().map(|(_, frame)| median_error(frame, ruler.as_ref())).collect(),
-        radial_band: ENOUGH_ACCURACY * simulation.ring_radius_m,
+        radial_band: radius.map(|radius| ENOUGH_ACCURACY * radius),
     })
 }
 
-fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: f64) -> Window {
+/// The window with a margin around points: the given one, else a tenth of their extent.
+fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: Option<f64>) -> Window {
     let bounds = Bounds::around(points.map(|[x, y]| Point::new(x, y)));
     let (low, high) = bounds.map_or(([0.0; 2], [1.0; 2]), |bounds| (pair(bounds.low), pair(bounds.high)));
+    let margin = margin.unwrap_or_else(|| 0.1 * (high[0] - low[0]).max(high[1] - low[1]).max(0.1));
     Window { min: low.map(|edge| edge - margin), max: high.map(|edge| edge + margin) }
 }
 
@@ -160,18 +235,24 @@ fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<f64>> {
     (0..targets).map(|target| sampled.iter().map(|(_, frame)| gap(frame, target)).collect()).collect()
 }
 
-fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> f64 {
+/// `None` where no robot finds the pattern.
+fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> Option<f64> {
     let targets: Vec<_> = frame.targets_um.iter().map(|&target| metres(target)).collect();
     let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets));
     let mut errors: Vec<f64> = frame.robots.iter().filter_map(|robot| distance(robot.position_um)).collect();
     errors.sort_by(f64::total_cmp);
-    errors.get(errors.len() / 2).copied().unwrap_or(0.0)
+    errors.get(errors.len() / 2).copied()
 }
 
 fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {
+    if frames.is_empty() {
+        return Vec::new();
+    }
     let seconds = (frames.len().saturating_sub(1) as f64 / per_second).floor();
     let whole_second = |instant: usize| (seconds * instant as f64 / (INSTANTS - 1) as f64).round();
-    let ticks: Vec<usize> = (0..INSTANTS).map(|instant| (whole_second(instant) * per_second) as usize).collect();
+    let mut ticks: Vec<usize> = (0..INSTANTS).map(|instant| (whole_second(instant) * per_second) as usize).collect();
+    // A run of few seconds has fewer moments.
+    ticks.dedup();
     let scale = f64::from(blob.scale);
     let unscaled = |target: &[i32; 2]| {
         let point = metres(*target);

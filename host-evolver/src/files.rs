@@ -4,78 +4,22 @@ use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::network::DEFAULT_GENES;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fmt;
-use std::io::{self, Write};
+use std::fs::DirEntry;
+use std::io;
 use std::path::{Path, PathBuf};
 
-/// How names of files and folders begin while they are being written.
-const UNFINISHED: &str = ".unfinished-";
+mod destination;
+mod error;
+mod ledger;
+mod lock;
+mod seal;
 
-/// What went wrong with a file.
-#[derive(Debug)]
-pub struct FileError {
-    path: PathBuf,
-    fault: String,
-    source: Option<io::Error>,
-}
-
-impl FileError {
-    /// `fault` says what is wrong with the file and what to do.
-    pub fn new(path: impl Into<PathBuf>, fault: impl fmt::Display) -> Self {
-        FileError { path: path.into(), fault: fault.to_string(), source: None }
-    }
-
-    /// The operating system refused what was to be `done`: `written`, `read`.
-    pub fn from_system(path: impl Into<PathBuf>, done: &str, source: io::Error) -> Self {
-        FileError { path: path.into(), fault: format!("cannot be {done}"), source: Some(source) }
-    }
-}
-
-/// Whether the system failed, and not what it was asked for: a full disk, a broken device, too many open files.
-pub fn is_fault_of_system(error: &io::Error) -> bool {
-    use io::ErrorKind as Kind;
-    /// EIO, ENFILE and EMFILE of every Unix, for which the standard library has no names.
-    const UNNAMED: [i32; 3] = [5, 23, 24];
-    matches!(
-        error.kind(),
-        Kind::StorageFull
-            | Kind::QuotaExceeded
-            | Kind::FileTooLarge
-            | Kind::WriteZero
-            | Kind::OutOfMemory
-            | Kind::BrokenPipe
-    ) || cfg!(unix) && error.raw_os_error().is_some_and(|code| UNNAMED.contains(&code))
-}
-
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.fault)
-    }
-}
-
-impl std::error::Error for FileError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.source.as_ref().map(|error| error as _)
-    }
-}
-
-/// Writes a file under a temporary name in the same folder and renames it: readers see the old content or the new.
-///
-/// # Errors
-/// What the operating system says, with the path.
-pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let attempt = || -> io::Result<()> {
-        std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)?;
-        file.write_all(content.as_ref())?;
-        file.as_file().sync_data()?;
-        set_usual_permissions(&file)?;
-        file.persist(path).map_err(|error| error.error)?;
-        Ok(())
-    };
-    attempt().map_err(|error| FileError::from_system(path, "written", error))
-}
+use destination::UNFINISHED;
+pub use destination::{probe, write};
+pub use error::{FileError, is_fault_of_system};
+pub use ledger::{Contents, Ledger, remove_empty};
+pub use lock::FolderLock;
+pub use seal::{sealed, sha256, unsealed};
 
 /// Fills a new folder under a temporary name beside its place and renames it: it is there whole or not at all.
 ///
@@ -94,35 +38,72 @@ pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileErr
     Ok(())
 }
 
-/// Copies the files of a folder into another.
+/// Deletes what killed processes left behind in a folder, and in those below it that are named; not in others, which may be
+/// anybody's. Only for who holds the folder's lock: others may be writing those files.
 ///
 /// # Errors
 /// What the operating system says.
-pub fn copy_files(from: &Path, to: &Path) -> Result<(), FileError> {
-    let cannot = |error| FileError::from_system(from, "copied", error);
-    for entry in std::fs::read_dir(from).map_err(cannot)? {
-        let entry = entry.map_err(cannot)?;
-        std::fs::copy(entry.path(), to.join(entry.file_name())).map_err(cannot)?;
+pub fn remove_unfinished(lock: &FolderLock, below: &[&str]) -> Result<(), FileError> {
+    remove_unfinished_in(lock.folder(), &|name| below.contains(&name))
+}
+
+fn remove_unfinished_in(folder: &Path, goes_into: &dyn Fn(&str) -> bool) -> Result<(), FileError> {
+    for (name, entry) in entries(folder)? {
+        let cannot = |error| FileError::from_system(entry.path(), "removed", error);
+        let is_folder = entry.file_type().map_err(cannot)?.is_dir();
+        match (is_folder, name.starts_with(UNFINISHED)) {
+            (true, true) => std::fs::remove_dir_all(entry.path()).map_err(cannot)?,
+            (true, false) if goes_into(&name) => remove_unfinished_in(&entry.path(), &|_| true)?,
+            (false, true) => std::fs::remove_file(entry.path()).map_err(cannot)?,
+            _ => {}
+        }
     }
     Ok(())
 }
 
-/// Deletes what killed processes left behind in a folder and below.
+/// What is in a folder, by name and in its order.
 ///
 /// # Errors
 /// What the operating system says.
-pub fn remove_unfinished(folder: &Path) -> Result<(), FileError> {
-    let cannot = |error| FileError::from_system(folder, "tidied", error);
+pub fn entries(folder: &Path) -> Result<Vec<(String, DirEntry)>, FileError> {
+    let cannot = |error| FileError::from_system(folder, "read", error);
+    let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(cannot)? {
         let entry = entry.map_err(cannot)?;
-        let is_folder = entry.file_type().map_err(cannot)?.is_dir();
-        let unfinished = entry.file_name().to_string_lossy().starts_with(UNFINISHED);
-        match (is_folder, unfinished) {
-            (true, true) => std::fs::remove_dir_all(entry.path()).map_err(cannot)?,
-            (true, false) => remove_unfinished(&entry.path())?,
-            (false, true) => std::fs::remove_file(entry.path()).map_err(cannot)?,
-            (false, false) => {}
-        }
+        found.push((entry.file_name().to_string_lossy().into_owned(), entry));
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(found)
+}
+
+/// The first thing in a folder that is none of `ours`, nor a leftover of a killed process.
+///
+/// # Errors
+/// What the operating system says.
+pub fn first_foreign(folder: &Path, ours: &dyn Fn(&str) -> bool) -> Result<Option<String>, FileError> {
+    let is_ours = |name: &str| name == lock::LOCK || name.starts_with(UNFINISHED) || ours(name);
+    Ok(entries(folder)?.into_iter().map(|(name, _)| name).find(|name| !is_ours(name)))
+}
+
+/// Finds out whether files with such paths can be written in a folder, by making and removing the like.
+///
+/// # Errors
+/// What the operating system says, with the path.
+pub fn probe_folder(lock: &FolderLock, paths: &[PathBuf]) -> Result<(), FileError> {
+    let folder = lock.folder();
+    let scratch = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(folder);
+    let scratch = scratch.map_err(|error| FileError::from_system(folder, "written", error))?;
+    for path in paths {
+        let attempt = || -> io::Result<()> {
+            let copy = scratch.path().join(path);
+            std::fs::create_dir_all(copy.parent().unwrap_or(scratch.path()))?;
+            std::fs::File::create(copy)?;
+            match folder.join(path).parent().filter(|folder| folder.exists()) {
+                Some(existing) => tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(existing).map(drop),
+                None => Ok(()),
+            }
+        };
+        attempt().map_err(|error| FileError::from_system(folder.join(path), "written", error))?;
     }
     Ok(())
 }
@@ -135,18 +116,6 @@ fn set_usual_folder_permissions(folder: &Path) -> io::Result<()> {
 
 #[cfg(not(unix))]
 fn set_usual_folder_permissions(_: &Path) -> io::Result<()> {
-    Ok(())
-}
-
-/// Temporary files are private; results are for everybody.
-#[cfg(unix)]
-fn set_usual_permissions(file: &tempfile::NamedTempFile) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.as_file().set_permissions(std::fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn set_usual_permissions(_: &tempfile::NamedTempFile) -> io::Result<()> {
     Ok(())
 }
 
@@ -190,15 +159,36 @@ pub fn json(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).map(|text| text + "\n").unwrap_or_default()
 }
 
+/// The version of this software, in every manifest.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Refuses a manifest that another version of this software has written, whatever else is in it.
+///
+/// # Errors
+/// A file that cannot be read, or another version, with the way out.
+pub fn check_version(path: &Path) -> Result<(), FileError> {
+    #[derive(serde::Deserialize)]
+    struct Versioned {
+        grn: String,
+    }
+    let Versioned { grn } = read_json(path)?;
+    if grn == VERSION {
+        return Ok(());
+    }
+    let way_out = format!("go on with grn {grn}, or begin anew in another folder with --out");
+    Err(FileError::new(path, format!("made by grn {grn}, and this is grn {VERSION}: {way_out}")))
+}
+
 /// The value in a JSON file.
 ///
 /// # Errors
 /// An unreadable file, or one that does not hold such a value.
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, FileError> {
     let damaged = |error: serde_json::Error| {
-        FileError::new(path, format!("damaged: {error}; delete its folder or choose another with --out"))
+        FileError::damaged(path, format!("{error}; delete its folder or choose another with --out"))
     };
-    serde_json::from_str(&read_text(path)?).map_err(damaged)
+    let bytes = std::fs::read(path).map_err(|error| FileError::from_system(path, "read", error))?;
+    serde_json::from_slice(&bytes).map_err(damaged)
 }
 
 /// The first difference between two values as JSON, in words: `settings.seed is 2 there and 1 now`.
@@ -233,16 +223,14 @@ where
     csv.into_inner().unwrap_or_default()
 }
 
-/// Writes records as CSV, with a header of their fields' names if there are any.
-///
-/// # Errors
-/// What the operating system says, with the path.
-pub fn write_csv<T: Serialize>(path: &Path, records: &[T]) -> Result<(), FileError> {
+/// Records as CSV, with a header of their fields' names if there are any.
+pub fn csv_records<T: Serialize>(records: &[T]) -> Vec<u8> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     for record in records {
-        csv.serialize(record).map_err(|error| FileError::new(path, error))?;
+        // Writing plain records to memory cannot fail.
+        let _ = csv.serialize(record);
     }
-    write(path, csv.into_inner().unwrap_or_default())
+    csv.into_inner().unwrap_or_default()
 }
 
 /// The records of a CSV file with a header.
@@ -250,15 +238,16 @@ pub fn write_csv<T: Serialize>(path: &Path, records: &[T]) -> Result<(), FileErr
 /// # Errors
 /// An unreadable file, or the first line that is no such record.
 pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
-    let text = read_text(path)?;
-    let records = csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect::<Result<_, _>>();
-    records.map_err(|error| FileError::new(path, format!("damaged: {error}; delete it or its folder")))
+    let damaged = |error| FileError::damaged(path, format!("{error}; delete it or its folder"));
+    parse_csv(&read_text(path)?).map_err(damaged)
 }
 
-/// The SHA-256 of some bytes, hexadecimal.
-pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
-    use sha2::Digest;
-    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+/// The records of CSV text with a header.
+///
+/// # Errors
+/// The first line that is no such record.
+pub fn parse_csv<T: DeserializeOwned>(text: &str) -> Result<Vec<T>, csv::Error> {
+    csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect()
 }
 
 #[cfg(test)]

@@ -1,33 +1,61 @@
 //! The tables that every run leaves, of whatever method: `front.csv` with a blob for each member, and `history.csv`.
 
-use crate::evolve::{FrontMember, Milestone, Objectives};
-use crate::files::{self, FileError, read_blob};
+use crate::evolve::{FrontMember, Milestone, Objectives, deployed};
+use crate::files::{self, Contents, FileError, read_blob};
+use crate::model::notation::Digits;
+use grn_core::blob::Blob;
 use grn_optimisers::knee::Knee;
 use std::path::Path;
 use std::str::FromStr;
 
 const FRONT: &str = "front.csv";
 const HISTORY: &str = "history.csv";
+const KNEE: &str = "knee.grn";
 
-/// Writes a front's table; `blobs` are the members' blobs, by their paths within the folder.
+/// What every run leaves, whatever is on its front.
+pub const ALWAYS: [&str; 3] = [FRONT, HISTORY, KNEE];
+
+/// The files of a front and its history by their paths in the run's folder, and the blob of the knee that is deployed; a
+/// blob for each member lies in the folder `blobs_in`, which ends in `/` if it is not the run's own.
 ///
 /// # Errors
-/// What the operating system says.
-pub fn write_front(
-    folder: &Path,
+/// A front without members, or a model that no blob can hold, by the file.
+pub fn contents(
     objectives: &Objectives,
     front: &[FrontMember],
-    blobs: &[String],
-) -> Result<(), FileError> {
+    history: &[Milestone],
+    blob_of: impl Fn(&FrontMember) -> Blob,
+    blobs_in: &str,
+) -> Result<(Contents, Blob), FileError> {
+    let mut contents = Contents::new();
+    let mut names = Vec::new();
+    let mut knee = None;
+    for (place, member) in front.iter().enumerate() {
+        let name = format!("{blobs_in}{place:02}-{}-nodes.grn", member.nodes);
+        let blob = blob_of(member);
+        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(&name, error))?;
+        if place == deployed(front) {
+            contents.insert(KNEE.into(), bytes.clone());
+            knee = Some(blob);
+        }
+        contents.insert(name.clone(), bytes);
+        names.push(name);
+    }
+    contents.insert(FRONT.into(), front_csv(objectives, front, &names));
+    contents.insert(HISTORY.into(), files::csv_records(history));
+    let knee = knee.ok_or_else(|| FileError::new(FRONT, "the front is empty"))?;
+    Ok((contents, knee))
+}
+
+fn front_csv(objectives: &Objectives, front: &[FrontMember], blobs: &[String]) -> Vec<u8> {
     let further: Vec<&str> = objectives.further_names().collect();
     let header = ["nodes", "f2"].into_iter().chain(further).chain(["violation", "knee", "expression", "blob"]);
     let row = |(member, blob): (&FrontMember, &String)| {
         let numbers = [member.nodes as f64, member.f2].into_iter().chain(member.further.iter().copied());
         let numbers = numbers.chain([member.violation]).map(|number| number.to_string());
-        numbers.chain([member.knee.to_string(), member.expression(), blob.clone()]).collect::<Vec<_>>()
+        numbers.chain([member.knee.to_string(), member.expression(Digits::All), blob.clone()]).collect::<Vec<_>>()
     };
-    let rows = front.iter().zip(blobs).map(row);
-    files::write(&folder.join(FRONT), files::csv(header, rows))
+    files::csv(header, front.iter().zip(blobs).map(row))
 }
 
 /// The front in a run's folder.
@@ -94,14 +122,6 @@ fn number<T: FromStr>(
     let text = record.get(place).unwrap_or_default();
     let line = record.position().map_or(0, csv::Position::line);
     text.parse().map_err(|_| damaged(format!("line {line}, column {}: {text:?}", place + 1)))
-}
-
-/// Writes a history.
-///
-/// # Errors
-/// What the operating system says.
-pub fn write_history(folder: &Path, history: &[Milestone]) -> Result<(), FileError> {
-    files::write_csv(&folder.join(HISTORY), history)
 }
 
 /// The history in a run's folder.

@@ -1,182 +1,188 @@
 //! The folder of an evolution run: manifest, checkpoint, results.
 //!
 //! Everything in it is written whole or not at all and depends only on scenario and settings, so an interrupted and
-//! resumed run leaves the same bytes as one left alone.
+//! resumed run leaves the same bytes as one left alone, and an extended one those of a run that was as long from the start.
+
+mod checkpoint;
+mod manifest;
+
+pub use manifest::Manifest;
 
 use crate::evaluation::{Model, World};
-use crate::evolve::{Search, Settings, State, deployed};
-use crate::figures;
-use crate::files::{self, FileError};
+use crate::evolve::{FrontMember, Search, State};
+use crate::figures::{self, Pictures};
+use crate::files::{self, Contents, FileError, FolderLock, Ledger};
 use crate::model::deploy;
-use crate::model::describe;
 use crate::results;
 use firmware_sim::scenario::Scenario;
-use grn_core::blob::{Blob, FORMAT_VERSION};
-use serde::{Deserialize, Serialize};
-use std::fmt;
+use grn_core::blob::Blob;
+use manifest::MANIFEST;
 use std::path::{Path, PathBuf};
 
-const MANIFEST: &str = "manifest.json";
 const CHECKPOINT: &str = "checkpoint.json";
+const SCENARIO: &str = "scenario.toml";
+/// Folders in a run's folder.
+const BELOW: [&str; 2] = ["front", "simulation"];
 
-/// What a run was made from; equal manifests give equal results.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Manifest {
-    /// Version of this software.
-    pub grn: String,
-    /// Blob format version.
-    pub blob_format: u8,
-    /// Name of the scenario.
-    pub scenario: String,
-    /// SHA-256 of the scenario's canonical text, hexadecimal; the text lies beside the manifest.
-    pub scenario_sha256: String,
-    /// Settings of the search, seed included.
-    pub settings: Settings,
-    /// World metres per model metre of the blobs.
-    pub scale: f32,
-}
-
-impl Manifest {
-    /// The manifest of a run by this software.
-    pub fn new(scenario: &Scenario, settings: Settings, scale: f32) -> Self {
-        Manifest {
-            grn: env!("CARGO_PKG_VERSION").into(),
-            blob_format: FORMAT_VERSION,
-            scenario: scenario.name().into(),
-            scenario_sha256: files::sha256(scenario.to_toml()),
-            settings,
-            scale,
-        }
-    }
-}
-
-/// Why a run folder cannot be used or filled.
-#[derive(Debug)]
-pub enum RunError {
-    /// A file in it.
-    File(FileError),
-    /// A picture could not be drawn.
-    Figure(&'static str, grn_figures::FigureError),
-}
-
-impl fmt::Display for RunError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            RunError::File(error) => error.fmt(f),
-            RunError::Figure(name, error) => write!(f, "{name} cannot be drawn: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for RunError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            RunError::File(error) => error.source(),
-            RunError::Figure(..) => None,
-        }
-    }
-}
-
-impl From<FileError> for RunError {
-    fn from(error: FileError) -> Self {
-        RunError::File(error)
-    }
-}
-
-/// The folder of one run.
+/// The folder of one run, which nobody else writes meanwhile.
 pub struct RunFolder {
-    folder: PathBuf,
+    lock: FolderLock,
+    manifest: Manifest,
+    /// What the user should hear.
+    notices: Vec<String>,
+}
+
+/// What a search has found, ready to be written.
+pub struct Results {
+    /// Files by their path in the run's folder.
+    pub contents: Contents,
+    /// The blob of the knee that is deployed.
+    pub knee: Blob,
+    /// Pictures that cannot be drawn, and why.
+    pub not_drawn: Vec<String>,
 }
 
 impl RunFolder {
-    /// Begins a run in a new or empty folder.
+    /// Begins a run in a new or empty folder; `command` is told to others who want it.
     ///
     /// # Errors
-    /// A folder that holds a run already, or cannot be written.
-    pub fn create(folder: &Path, manifest: &Manifest, scenario: &Scenario) -> Result<Self, RunError> {
-        let run = RunFolder { folder: folder.to_owned() };
-        let path = run.path(MANIFEST);
+    /// A folder that holds a run or something else already, that somebody else writes, or that cannot be written.
+    pub fn create(folder: &Path, command: &str, manifest: Manifest, scenario: &Scenario) -> Result<Self, FileError> {
+        let lock = FolderLock::take(folder, command)?;
+        let path = folder.join(MANIFEST);
         if path.exists() {
             let way_out = "a run is here already; continue it with --resume, or choose another folder with --out";
-            return Err(FileError::new(path, way_out).into());
+            return Err(FileError::new(path, way_out));
         }
-        files::write(&run.path("scenario.toml"), scenario.to_toml())?;
-        files::write(&path, files::json(manifest))?;
+        if let Some(name) = files::first_foreign(folder, &|_| false)? {
+            let fault = format!("holds other things ({name}); choose an empty or new folder with --out");
+            return Err(FileError::new(folder, fault));
+        }
+        files::remove_unfinished(&lock, &BELOW)?;
+        files::probe_folder(&lock, &["front/00-31-nodes.grn".into(), "simulation/metrics.json".into()])?;
+        let run = RunFolder { lock, manifest, notices: Vec::new() };
+        run.write_manifest(&run.manifest)?;
+        files::write(&run.path(SCENARIO), scenario.to_toml())?;
         Ok(run)
     }
 
-    /// Continues a run, or begins it if the folder does not hold one yet; files that a killed process left half-written
-    /// go. The state is `None` before the first checkpoint.
+    /// Continues a run, perhaps with a larger budget; files that a killed process left half-written go. The state is `None`
+    /// before the first checkpoint. A run that was killed before it could write anything begins anew.
     ///
     /// # Errors
-    /// A run made with another scenario, other settings or another version, or damaged files.
-    pub fn resume(folder: &Path, manifest: &Manifest, scenario: &Scenario) -> Result<(Self, Option<State>), RunError> {
-        let run = RunFolder { folder: folder.to_owned() };
-        let path = run.path(MANIFEST);
-        if !path.exists() {
-            return Ok((RunFolder::create(folder, manifest, scenario)?, None));
+    /// No run, one made with another scenario, other settings or another version, a longer one, damaged files, or a folder
+    /// that somebody else writes.
+    pub fn resume(
+        folder: &Path,
+        command: &str,
+        manifest: Manifest,
+        scenario: &Scenario,
+    ) -> Result<(Self, Option<State>), FileError> {
+        if !folder.join(MANIFEST).exists() {
+            let is_leftover = folder.is_dir()
+                && !files::entries(folder)?.is_empty()
+                && files::first_foreign(folder, &|_| false)?.is_none();
+            if is_leftover {
+                return Ok((RunFolder::create(folder, command, manifest, scenario)?, None));
+            }
+            let way_out = "no run is here to go on with; mend --out, or leave out --resume to begin one";
+            return Err(FileError::new(folder, way_out));
         }
-        let found: Manifest = files::read_json(&path)?;
-        if let Some(difference) = files::difference(manifest, &found) {
-            let way_out = "give the same settings to --resume, or choose another folder with --out";
-            return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")).into());
+        let lock = FolderLock::take(folder, command)?;
+        let found = manifest.matching(folder)?;
+        files::remove_unfinished(&lock, &BELOW)?;
+        let path = folder.join(CHECKPOINT);
+        let state = match path.exists() {
+            true => Some(checkpoint::load(&path, &found.identity(), &found.settings)?),
+            false => None,
+        };
+        let mut notices = Vec::new();
+        if found.finished && state.is_none() {
+            notices.push(format!("{} is missing: the search begins anew", path.display()));
         }
-        files::remove_unfinished(folder)?;
-        let checkpoint = run.path(CHECKPOINT);
-        let state = if checkpoint.exists() { Some(files::read_json(&checkpoint)?) } else { None };
+        if found.finished {
+            let damaged = found.files.names().filter(|name| !found.files.holds(folder, name));
+            let told = |name| format!("{} is missing or was changed: it is written anew", folder.join(name).display());
+            notices.extend(damaged.map(told));
+        }
+        let run = RunFolder { lock, manifest: Manifest { files: found.files, ..manifest }, notices };
+        run.write_manifest(&run.manifest)?;
+        files::write(&run.path(SCENARIO), scenario.to_toml())?;
         Ok((run, state))
+    }
+
+    /// What the user should hear of the folder.
+    pub fn notices(&self) -> &[String] {
+        &self.notices
     }
 
     /// The path of something in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
+        self.lock.folder().join(name)
     }
 
-    /// Saves the state after a generation.
+    fn write_manifest(&self, manifest: &Manifest) -> Result<(), FileError> {
+        files::write(&self.path(MANIFEST), files::json(manifest))
+    }
+
+    /// Saves the state after a generation. Not that after a last one which the budget cuts short: from there the run could
+    /// not be extended.
     ///
     /// # Errors
     /// What the operating system says.
-    pub fn save(&self, state: &State) -> Result<(), RunError> {
-        Ok(files::write(&self.path(CHECKPOINT), files::json(state))?)
+    pub fn save(&self, state: &State) -> Result<(), FileError> {
+        if !checkpoint::is_whole(state, &self.manifest.settings) {
+            return Ok(());
+        }
+        checkpoint::save(&self.path(CHECKPOINT), &self.manifest.identity(), state)
     }
 
-    /// Writes front, blobs and pictures; returns the blob of the knee that is deployed.
+    /// Front, blobs and pictures of a search that is done.
     ///
     /// # Errors
-    /// A file that cannot be written or a picture that cannot be drawn.
-    pub fn finish(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Blob, RunError> {
+    /// A model that no blob can hold.
+    pub fn results(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Results, FileError> {
         let front = search.front();
-        let mut knee = None;
-        let mut blobs = Vec::new();
-        for (place, member) in front.iter().enumerate() {
-            let blob = deploy::blob(member.network.clone(), &world.scenario().morphogen(), scale);
-            let name = format!("front/{place:02}-{}-nodes.grn", member.nodes);
-            files::write_blob(&self.path(&name), &blob)?;
-            blobs.push(name);
-            if place == deployed(&front) {
-                knee = Some(blob);
-            }
-        }
-        results::write_front(&self.folder, &search.settings().objectives, &front, &blobs)?;
-        results::write_history(&self.folder, &search.state().history)?;
-        let knee = knee.ok_or_else(|| FileError::new(self.path("front.csv"), "the front is empty"))?;
-        files::write_blob(&self.path("knee.grn"), &knee)?;
-        self.draw("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring()))?;
-        self.draw("tree.svg", grn_figures::tree(&describe::syntax_tree(&knee.network)))?;
-        self.draw("grn.svg", grn_figures::grn(&describe::graph(&knee.network)))?;
+        let morphogen = world.scenario().morphogen();
+        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, scale);
+        let State { history, .. } = search.state();
+        let (mut contents, knee) =
+            results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
+        contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
+        let mut pictures = Pictures::default();
+        pictures.add(
+            "pareto.svg",
+            figures::front(&search.settings().objectives, &front, &search.others(), &world.scenario().ring()),
+        );
+        pictures.add("tree.svg", Ok(figures::tree(&knee.network)));
+        pictures.add("grn.svg", figures::grn(&knee.network));
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
-            self.draw("pattern.svg", figures::pattern(world, &model))?;
+            pictures.add("pattern.svg", figures::pattern(world, &model));
         }
-        Ok(knee)
+        contents.extend(pictures.contents);
+        let not_drawn = pictures.not_drawn;
+        Ok(Results { contents, knee, not_drawn })
     }
 
-    /// Writes a picture.
+    /// Writes results to which others are to come.
     ///
     /// # Errors
-    /// A picture that could not be drawn or written.
-    pub fn draw(&self, name: &'static str, figure: Result<String, grn_figures::FigureError>) -> Result<(), RunError> {
-        let svg = figure.map_err(|error| RunError::Figure(name, error))?;
-        Ok(files::write(&self.path(name), svg)?)
+    /// A file that cannot be written.
+    pub fn add(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger| self.write_manifest(&Manifest { files: files.clone(), ..self.manifest.clone() });
+        self.manifest.files = self.manifest.files.add(self.lock.folder(), contents, write)?;
+        Ok(())
+    }
+
+    /// Brings the folder to hold these results, all of them, and nothing of a shorter run.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger, finished: bool| {
+            self.write_manifest(&Manifest { files: files.clone(), finished, ..self.manifest.clone() })
+        };
+        self.manifest.files = self.manifest.files.publish(self.lock.folder(), contents, write)?;
+        Ok(())
     }
 }

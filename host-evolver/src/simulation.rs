@@ -8,6 +8,7 @@ use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Swarm};
 use firmware_sim::trace::Trace;
 use grn_core::blob::Blob;
+use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::pattern::NoPattern;
 use grn_core::robot::{Controller, LoadError};
@@ -20,6 +21,11 @@ use std::ops::ControlFlow;
 pub const ENOUGH_ENCIRCLED: f64 = 0.98;
 /// Largest median radial error, as a share of the ring's radius.
 pub const ENOUGH_ACCURACY: f64 = 0.10;
+
+/// Largest share of robots' moments after forming in which the distance from the pattern may be unknown.
+pub const ENOUGH_UNKNOWN: f64 = 0.05;
+/// Most contacts between robots, for each robot: one may bump into another while the swarm forms, not again and again.
+pub const ENOUGH_PEER_CONTACTS: f64 = 1.0;
 
 /// Why there was no simulation.
 #[derive(Debug)]
@@ -66,29 +72,48 @@ pub struct Verdict {
     pub encircled: bool,
     /// Median radial error below [`ENOUGH_ACCURACY`] of the ring's radius.
     pub accurate: bool,
+    /// The distance from the pattern was unknown in at most [`ENOUGH_UNKNOWN`] of the robots' moments after forming.
+    pub known: bool,
+    /// No robot was off the pattern at the end.
+    pub none_lost: bool,
+    /// No robot left the pattern and came back.
+    pub none_strayed: bool,
     /// No wall was touched.
     pub clear_of_walls: bool,
+    /// At most [`ENOUGH_PEER_CONTACTS`] contacts between robots for each of them.
+    pub clear_of_peers: bool,
 }
 
 impl Verdict {
     /// All of it.
     pub fn works(self) -> bool {
-        self.encircled && self.accurate && self.clear_of_walls
+        let Verdict { encircled, accurate, known, none_lost, none_strayed, clear_of_walls, clear_of_peers } = self;
+        encircled && accurate && known && none_lost && none_strayed && clear_of_walls && clear_of_peers
     }
 }
 
 impl Simulation {
-    /// Median radial error as a share of the ring's radius; `None` if the swarm never formed.
+    /// Median radial error as a share of the ring's radius; `None` if the swarm never formed or the median is unknown.
     pub fn radial_error_share(&self) -> Option<f64> {
         self.metrics.radial_error_median_m.map(|error| error / self.ring_radius_m)
     }
 
+    /// The most contacts between robots that a working swarm of this size has.
+    pub fn allowed_peer_contacts(&self) -> u64 {
+        (ENOUGH_PEER_CONTACTS * f64::from(self.trace.header().robots)) as u64
+    }
+
     /// Whether the controller works.
     pub fn verdict(&self) -> Verdict {
+        let metrics = &self.metrics;
         Verdict {
-            encircled: self.metrics.encircled_share.is_some_and(|share| share >= ENOUGH_ENCIRCLED),
+            encircled: metrics.encircled_share.is_some_and(|share| share >= ENOUGH_ENCIRCLED),
             accurate: self.radial_error_share().is_some_and(|share| share < ENOUGH_ACCURACY),
-            clear_of_walls: self.metrics.wall_contacts == 0,
+            known: metrics.radial_error_unknown_share.is_some_and(|share| share <= ENOUGH_UNKNOWN),
+            none_lost: metrics.lost_robots == 0,
+            none_strayed: metrics.strayed_robots == 0,
+            clear_of_walls: metrics.wall_contacts == 0,
+            clear_of_peers: metrics.peer_contacts <= self.allowed_peer_contacts(),
         }
     }
 }
@@ -133,11 +158,10 @@ pub(crate) fn run<B: Brain>(
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }
-    let walls = swarm.walls().clone();
-    let trace = swarm.into_trace();
-    let distance = |robot, targets: &[Point<f64>]| ruler.distance(robot, targets);
-    let metrics = Metrics::of(&trace, &walls, &MetricsOptions::default(), distance);
-    Ok(Some(Simulation { trace, metrics, ring_radius_m: ruler.ring_radius() }))
+    let stop_ticks = swarm.config().stop_ticks();
+    let options = MetricsOptions { walls: swarm.walls(), ring_radius_m: ruler.ring_radius(), stop_ticks: &stop_ticks };
+    let metrics = Metrics::of(swarm.trace(), &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
+    Ok(Some(Simulation { trace: swarm.into_trace(), metrics, ring_radius_m: ruler.ring_radius() }))
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.
@@ -146,6 +170,10 @@ pub struct PatternRuler<'s> {
     field: grn_core::field::Field<f64>,
     scenario: &'s Scenario,
     scale: f64,
+    /// Radius of the ring around a lone target in free space, scenario metres.
+    ring_radius: f64,
+    /// How far from all targets a point may be and still belong to their pattern, scenario metres.
+    reach: f64,
 }
 
 impl<'s> PatternRuler<'s> {
@@ -155,17 +183,27 @@ impl<'s> PatternRuler<'s> {
     /// [`NoPattern`] if the blob's network has none.
     pub fn new(blob: &Blob, scenario: &'s Scenario) -> Result<Self, NoPattern> {
         let model = Model::new(&blob.network, f64::from(blob.level_fraction))?;
-        Ok(PatternRuler { model, field: blob.field.field(1.0), scenario, scale: f64::from(blob.scale) })
+        let field = blob.field.field(1.0);
+        let ring_radius = model.pattern().free_space_radius(model.network(), &field).unwrap_or(f64::INFINITY);
+        let merged = merged_ring_radius(blob.field.kernel, ring_radius, field.target_width(), scenario.paths().len());
+        Ok(PatternRuler {
+            model,
+            field,
+            scenario,
+            scale: f64::from(blob.scale),
+            ring_radius,
+            reach: ring_radius + merged,
+        })
     }
 
     /// Radius of the ring around a lone target in free space, world metres; infinite if it does not close.
     pub fn ring_radius(&self) -> f64 {
-        let radius = self.model.pattern().free_space_radius(self.model.network(), &self.field);
-        radius.map_or(f64::INFINITY, |radius| radius * self.scale)
+        self.ring_radius * self.scale
     }
 
-    /// Distance from `robot` to the nearest candidate point, all in world metres; `None` where the pattern cannot be
-    /// sensed.
+    /// Distance from `robot` to the nearest candidate point, all in world metres. `None` where none is found, and where the
+    /// one that is found is farther from every target than two ring radii (more with several targets, whose rings merge):
+    /// the contour is open there and follows the walls away from the targets, so it encloses none.
     pub fn distance(&self, robot: Point<f64>, targets: &[Point<f64>]) -> Option<f64> {
         let unscaled = |point: Point<f64>| Vector::new(point.x / self.scale, point.y / self.scale);
         let start = unscaled(robot);
@@ -174,6 +212,16 @@ impl<'s> PatternRuler<'s> {
         let longest = self.field.target_width() / 4.0;
         let walls = self.scenario.walls();
         let found = pattern.nearest_candidate(self.model.network(), &self.field, &targets, walls, start, longest)?;
-        Some((found.point - start).length() * self.scale)
+        let near_target = targets.iter().any(|&target| (found - target).length() <= self.reach);
+        near_target.then(|| (found - start).length() * self.scale)
+    }
+}
+
+/// Radius of the ring around `targets` targets at one place: where n κ(R/σ) = κ(r/σ), the level of a lone target's ring.
+fn merged_ring_radius(kernel: Kernel, ring_radius: f64, target_width: f64, targets: usize) -> f64 {
+    let widened = target_width * libm::log(targets.max(1) as f64);
+    match kernel {
+        Kernel::Gaussian => (ring_radius * ring_radius + 2.0 * target_width * widened).sqrt(),
+        Kernel::Exponential => ring_radius + widened,
     }
 }

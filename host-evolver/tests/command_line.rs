@@ -67,7 +67,9 @@ fn evolve_leaves_the_same_folder_for_any_threads_and_after_any_kill() -> Outcome
     for attempt in 0..6 {
         let folder = scratch.path().join(format!("killed-{attempt}"));
         for kill in 0..4 {
-            let mut child = evolve(&folder, &["--seed", "5", "--resume"]).spawn()?;
+            let begun = folder.join("manifest.json").exists();
+            let resume: &[&str] = if begun { &["--seed", "5", "--resume"] } else { &["--seed", "5"] };
+            let mut child = evolve(&folder, resume).spawn()?;
             std::thread::sleep(Duration::from_millis(40 + (attempt * 97 + kill * 211) % 700));
             child.kill()?;
             child.wait()?;

@@ -83,9 +83,9 @@ impl Look for Tables {
     }
 }
 
-/// `12.3 % (10.1 to 14.5)`.
+/// `12.3 % (10.1 to 14.5)`, of a single trial `1 of 1`.
 fn percent(row: &TransferRow) -> String {
-    format!("{:.1} % ({:.1} to {:.1})", 100.0 * row.rate, 100.0 * row.low, 100.0 * row.high)
+    row.rate_words()
 }
 
 /// `0.0135 (0.0134 to 0.0136)`, whole numbers for nodes.
@@ -95,7 +95,7 @@ fn quartiles(row: &Summary) -> String {
         _ if value >= 2.0 => "infeasible".into(),
         _ => format!("{value:.5}"),
     };
-    format!("{} ({} to {})", number(row.median), number(row.lower), number(row.upper))
+    row.quartile_words(number)
 }
 
 /// `p < 0.0001` or `p = 0.0123`.

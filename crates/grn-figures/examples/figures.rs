@@ -1,6 +1,7 @@
 //! Draws every kind of figure from made-up data: `cargo run --example figures -- DIRECTORY`.
 
 use grn_figures::*;
+use grn_optimisers::knee::Knee;
 use grn_optimisers::statistics::{quartiles, wilson};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -12,8 +13,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     save(&directory, "pareto", pareto(&population(), "", Some(&reference))?)?;
     let narrow: Vec<ParetoPoint> = population().into_iter().filter(|p| p.f2 < 0.06).collect();
     save(&directory, "pareto-linear", pareto(&narrow, "Compound channel", None)?)?;
-    save(&directory, "tree", tree(&nand_xnor())?)?;
-    save(&directory, "tree-large", tree(&full(4))?)?;
+    save(&directory, "tree", tree(&nand_xnor()))?;
+    save(&directory, "tree-large", tree(&full(4)))?;
     save(&directory, "grn", grn(&two_genes())?)?;
     save(&directory, "grn-three", grn(&three_genes())?)?;
     save(&directory, "grn-eh", grn(&eh_grn())?)?;
@@ -25,20 +26,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     square.window = Window { min: [0.0, 0.0], max: [20.0, 20.0] };
     save(&directory, "trace-square", trace(&square)?)?;
     save(&directory, "trace-two", trace(&run(&[2.5, 4.5], 5.0))?)?;
-    save(&directory, "boxes", boxes(&campaign(6, &METHODS))?)?;
-    save(&directory, "boxes-one", boxes(&campaign(1, &METHODS[..4]))?)?;
-    save(&directory, "boxes-many", boxes(&campaign(1, &[METHODS, METHODS].concat()))?)?;
+    save_pages(&directory, "boxes", boxes(&campaign(6, &METHODS))?)?;
+    save_pages(&directory, "boxes-one", boxes(&campaign(1, &METHODS[..4]))?)?;
+    save_pages(&directory, "boxes-many", boxes(&campaign(1, &[METHODS, METHODS].concat()))?)?;
     let long = ["Differential evolution", "Reimplementation", "CMA-ES"];
-    save(&directory, "boxes-upright", boxes(&campaign(1, &long.repeat(4)))?)?;
-    save(&directory, "convergence", convergence(&histories(3, &METHODS))?)?;
-    save(&directory, "convergence-one", convergence(&histories(1, &METHODS[..3]))?)?;
-    save(&directory, "rates", rates(&successes(3, &METHODS))?)?;
-    save(&directory, "rates-one", rates(&successes(1, &METHODS[..3]))?)?;
+    save_pages(&directory, "boxes-upright", boxes(&campaign(1, &long.repeat(4)))?)?;
+    save_pages(&directory, "convergence", convergence(&histories(3, &METHODS))?)?;
+    save_pages(&directory, "convergence-one", convergence(&histories(1, &METHODS[..3]))?)?;
+    save_pages(&directory, "rates", rates(&successes(3, &METHODS))?)?;
+    save_pages(&directory, "rates-one", rates(&successes(1, &METHODS[..3]))?)?;
     Ok(())
 }
 
 fn save(directory: &Path, name: &str, svg: String) -> std::io::Result<()> {
     std::fs::write(directory.join(name).with_extension("svg"), svg)
+}
+
+fn save_pages(directory: &Path, name: &str, pages: Vec<String>) -> std::io::Result<()> {
+    for (page, svg) in pages.into_iter().enumerate() {
+        save(directory, &if page == 0 { name.to_owned() } else { format!("{name}-{}", page + 1) }, svg)?;
+    }
+    Ok(())
 }
 
 /// Numbers from 0 to 1 that look random and are the same every time.
@@ -48,22 +56,26 @@ fn noise(seed: u64) -> f64 {
     ((z ^ (z >> 27)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-fn point(nodes: u32, f2: f64, feasible: bool, knee: Option<KneeKind>, label: &str) -> ParetoPoint {
+const NONE: Knee = Knee { angle: false, utility: false };
+const ANGLE: Knee = Knee { angle: true, utility: false };
+const BOTH: Knee = Knee { angle: true, utility: true };
+
+fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
     ParetoPoint { nodes, f2, feasible, knee, label: label.into() }
 }
 
 fn population() -> Vec<ParetoPoint> {
     let mut points = vec![
-        point(3, 0.512, true, None, "XNOR(x1,x2)"),
-        point(5, 0.0164, true, Some(KneeKind::Both), "XNOR(NAND(x1,x1),x2)"),
-        point(7, 0.0149, true, Some(KneeKind::Angle), "XNOR(ANDN(x1,x2),NAND(x2,x1))"),
-        point(11, 0.0143, true, None, "…"),
-        point(13, 0.01412, true, None, "…"),
+        point(3, 0.512, true, NONE, "(XNOR x1 x2)"),
+        point(5, 0.0164, true, BOTH, "(XNOR (NAND x1 x1) x2)"),
+        point(7, 0.0149, true, ANGLE, "(XNOR (ANDN x1 x2) (NAND x2 x1))"),
+        point(11, 0.0143, true, NONE, "…"),
+        point(13, 0.01412, true, NONE, "…"),
     ];
     for i in 0..30 {
         let nodes = 3 + 2 * (noise(i) * 6.5) as u32;
         let f2 = 0.02 * libm::exp(3.2 * noise(100 + i));
-        points.push(point(nodes, f2, noise(200 + i) > 0.3, None, ""));
+        points.push(point(nodes, f2, noise(200 + i) > 0.3, NONE, ""));
     }
     points
 }
@@ -98,8 +110,8 @@ use Source::{Gene as G, X1, X2};
 
 fn two_genes() -> Vec<Gene> {
     vec![
-        gene("G1", "NAND", 0.8393, &[(X1, false), (X1, false)]),
-        gene("G2", "XNOR", 0.9256, &[(G(0), false), (X2, false)]),
+        gene("y1", "NAND", 0.8393, &[(X1, false), (X1, false)]),
+        gene("M", "XNOR", 0.9256, &[(G(0), false), (X2, false)]),
     ]
 }
 
@@ -212,7 +224,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         };
         times.iter().enumerate().map(value).collect::<Vec<f64>>()
     };
-    let error = |(i, t): (usize, &f64)| 0.9 * libm::exp(-t / 9.0) + 0.05 + 0.03 * noise(7000 + i as u64);
+    let error = |(i, t): (usize, &f64)| Some(0.9 * libm::exp(-t / 9.0) + 0.05 + 0.03 * noise(7000 + i as u64));
     TraceFigure {
         window: Window { min: [0.0, 4.5], max: [20.0, 15.5] },
         walls: walls(),
@@ -222,7 +234,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         instants: (0..=instants as i32).map(instant).collect(),
         gaps: (0..starts.len()).map(gap).collect(),
         radial_error: times.iter().enumerate().map(error).collect(),
-        radial_band: 0.16,
+        radial_band: Some(0.16),
         times,
     }
 }
@@ -271,7 +283,7 @@ fn histories(panels: usize, methods: &[&str]) -> ConvergenceFigure {
 fn successes(groups: usize, methods: &[&str]) -> RatesFigure {
     let row = |i: usize, j: usize| {
         let count = (30.0 * noise((10 * i + j) as u64).max(0.2 * (4 - j) as f64)) as usize;
-        RateRow { label: methods[j].into(), rate: count as f64 / 30.0, interval: wilson(count, 30) }
+        RateRow { label: methods[j].into(), successes: count as u64, trials: 30, interval: Some(wilson(count, 30)) }
     };
     let group = |i: usize| RateGroup {
         title: if groups > 1 { SCENARIOS[i].into() } else { String::new() },

@@ -6,6 +6,9 @@
 //! text but subscripts is set below 7 points. Lengths in the world are metres with y upwards, times are
 //! seconds, angles in the data are radians unless a name says otherwise.
 //!
+//! A figure is drawn whatever the data, as long as they are numbers that mean something: with nothing to show it says so,
+//! with too much for a page it goes on overleaf, and long names are broken or cut. Errors name numbers that mean nothing.
+//!
 //! Colours are those of Okabe and Ito, which people with colour-blindness can tell apart; every
 //! distinction is also made by shape, dash or lightness, so that a grey print keeps it.
 //!
@@ -24,15 +27,20 @@ mod rates;
 mod trace;
 mod tree;
 
+#[cfg(test)]
+mod odd_data;
+
 pub use boxes::{BoxFigure, BoxGroup, BoxPanel, boxes};
 pub use canvas::error::FigureError;
+pub use canvas::note::nothing_to_draw;
 pub use canvas::style;
 pub use chart::map::Window;
 pub use convergence::{ConvergenceFigure, ConvergencePanel, ConvergenceSeries, convergence};
 pub use grn::data::{Gene, Input, Source};
 pub use grn::figure::grn;
-pub use pareto::data::{KneeKind, ParetoPoint, Reference};
+pub use pareto::data::{ParetoPoint, Reference};
 pub use pareto::figure::pareto;
+pub use pareto::pairs::{ObjectivesFigure, ObjectivesPoint, objectives};
 pub use pattern::{Panel, PatternFigure, Target, pattern};
 pub use rates::{RateGroup, RateRow, RatesFigure, rates};
 pub use trace::data::{Instant, Pose, TraceFigure};

@@ -1,14 +1,13 @@
 //! The pattern along the targets' path, one small map for each moment.
 
 use crate::canvas::error::{FigureError, finite, finite_lines};
+use crate::canvas::note::nothing_to_draw;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{
-    BLUE, BLUE_TINT, COLUMN, GREEN, GREY, INK, LABEL, PAGE, PAGE_HEIGHT, SMALL, THIN, VERMILLION,
-};
+use crate::canvas::style::{BLUE, BLUE_TINT, COLUMN, GREEN, GREY, LABEL, PAGE, PAGE_HEIGHT, SMALL, VERMILLION};
 use crate::canvas::svg::Svg;
-use crate::canvas::text::width;
+use crate::canvas::text::{lines, width};
 use crate::chart::legend::{Key, legend};
-use crate::chart::map::{View, Window};
+use crate::chart::map::{View, Window, frame_look, wall_look};
 
 /// A target of the swarm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +37,7 @@ pub struct Panel {
     pub candidates: Vec<[f64; 2]>,
 }
 
-/// A page of moments that share a world.
+/// Moments that share a world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PatternFigure {
     /// The world.
@@ -51,17 +50,19 @@ pub struct PatternFigure {
     pub columns: Option<usize>,
 }
 
-/// Panels that one figure shows at most: five rows of five.
-const PANELS: usize = 25;
 const GAP: f64 = 8.0;
 const CAPTION: f64 = 12.0;
 
-/// Draws the moments in rows, (a), (b), (c), …, all to one scale unless their windows differ in size.
+/// Draws the moments in rows, (a), (b), (c), …, all to one scale unless their windows differ in size. The figure is as
+/// high as it takes; 25 moments fill a page.
 ///
 /// # Errors
-/// No panels, more than 25, coordinates that are not finite, an empty region or window.
+/// Coordinates that are not finite, a region or window that is none.
 pub fn pattern(figure: &PatternFigure) -> Result<String, FigureError> {
     check(figure)?;
+    if figure.panels.is_empty() {
+        return Ok(nothing_to_draw("there is no moment to show"));
+    }
     let windows: Vec<Window> = figure.panels.iter().map(|p| p.window.unwrap_or(figure.region)).collect();
     let shape = windows.iter().map(|w| w.height() / w.width()).fold(0.0, f64::max).clamp(0.3, 1.5);
     let count = figure.panels.len();
@@ -94,13 +95,6 @@ pub fn pattern(figure: &PatternFigure) -> Result<String, FigureError> {
 }
 
 fn check(figure: &PatternFigure) -> Result<(), FigureError> {
-    let count = figure.panels.len();
-    if count == 0 {
-        return Err(FigureError::Empty { what: "panels" });
-    }
-    if count > PANELS {
-        return Err(FigureError::TooMany { what: "panels", found: count, limit: PANELS });
-    }
     figure.region.check("region", 0)?;
     finite_lines("path", &figure.paths)?;
     for (index, panel) in figure.panels.iter().enumerate() {
@@ -130,9 +124,18 @@ fn columns(count: usize, shape: f64) -> usize {
     (3..=5).rev().min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(5)
 }
 
+/// a, b, …, z, aa, ab, ….
+fn letters(index: usize) -> String {
+    let last = char::from(b'a' + (index % 26) as u8);
+    match index / 26 {
+        0 => last.to_string(),
+        before => letters(before - 1) + &last.to_string(),
+    }
+}
+
 fn draw_panel(svg: &mut Svg, figure: &PatternFigure, panel: &Panel, view: &View, index: usize, own_bar: bool) {
     let rect = view.rect;
-    let letter = format!("({})", char::from(b'a' + (index % PANELS) as u8));
+    let letter = format!("({})", letters(index));
     svg.open("panel", &format!("{letter} {}", panel.title));
     svg.open_clip(&rect);
     view.walls(svg, &panel.walls);
@@ -155,11 +158,14 @@ fn draw_panel(svg: &mut Svg, figure: &PatternFigure, panel: &Panel, view: &View,
         mark_target(svg, view.place(target.position), target.enclosed);
     }
     svg.close_clip();
-    svg.rect(&rect, 0.0, &Paint::stroke(INK, THIN));
+    svg.rect(&rect, 0.0, &frame_look());
     let base = rect.y - 3.2;
     let font = Font::new(LABEL, Anchor::Start);
     svg.text(&letter, (rect.x, base), &font.clone().bold());
-    svg.text(&panel.title, (rect.x + width(&letter, LABEL, true) + 3.0, base), &font);
+    let x = rect.x + width(&letter, LABEL, true) + 3.0;
+    let bar = if own_bar { view.scale_bar_width(24.0) + 4.0 } else { 0.0 };
+    let title = lines(&panel.title, LABEL, (rect.right() - bar - x).max(LABEL), 1).concat();
+    svg.text(&title, (x, base), &font);
     if own_bar {
         let bar = view.scale_bar_width(24.0);
         view.scale_bar(svg, rect.right() - bar, base, 24.0);
@@ -167,7 +173,7 @@ fn draw_panel(svg: &mut Svg, figure: &PatternFigure, panel: &Panel, view: &View,
     svg.close();
 }
 
-pub(crate) fn ring() -> Paint {
+fn ring() -> Paint {
     Paint::stroke(BLUE, 1.0).filled(BLUE_TINT)
 }
 
@@ -176,7 +182,7 @@ fn leak() -> Paint {
 }
 
 /// An enclosed target is a green disc, one that is not a vermillion cross in a ring.
-pub(crate) fn mark_target(svg: &mut Svg, at: (f64, f64), enclosed: bool) {
+fn mark_target(svg: &mut Svg, at: (f64, f64), enclosed: bool) {
     if enclosed {
         svg.circle(at, 2.1, &Paint::stroke("#FFFFFF", 0.5).filled(GREEN));
     } else {
@@ -207,7 +213,7 @@ fn entries(figure: &PatternFigure) -> Vec<(Key, &'static str)> {
         out.push((Key::Line(Paint::stroke(GREY, 0.6).dashed(&[2.0, 1.6])), "target path"));
     }
     if any(&|p| !p.walls.is_empty()) {
-        out.push((Key::Area(Paint::stroke(GREY, 0.5).filled(crate::canvas::style::WALL)), "wall"));
+        out.push((Key::Area(wall_look()), "wall"));
     }
     out
 }
@@ -235,7 +241,7 @@ mod tests {
 
     #[test]
     fn every_panel_is_drawn() {
-        for count in [1, 2, 7, 25] {
+        for count in [1, 2, 7, 25, 60] {
             let svg = pattern(&figure(count)).unwrap();
             assert_eq!(svg, pattern(&figure(count)).unwrap());
             let document = read(&svg);
@@ -261,14 +267,18 @@ mod tests {
     }
 
     #[test]
+    fn moments_are_lettered_without_end_and_none_is_said() {
+        assert_eq!([0, 25, 26, 51, 52].map(letters), ["a", "z", "aa", "az", "ba"]);
+        assert!(read(&pattern(&figure(0)).unwrap()).texts.concat().starts_with("Nothing to draw"));
+    }
+
+    #[test]
     fn bad_figures_are_refused() {
-        assert_eq!(pattern(&figure(0)), Err(FigureError::Empty { what: "panels" }));
-        assert!(matches!(pattern(&figure(26)), Err(FigureError::TooMany { found: 26, .. })));
         let mut bad = figure(3);
         bad.panels[2].contours[0][1][0] = f64::NAN;
         let expected = FigureError::NotFinite { what: "a coordinate of panel", index: 2 };
         assert_eq!(pattern(&bad), Err(expected));
-        bad.region.max[0] = 0.0;
+        bad.region.max[0] = -1.0;
         assert!(matches!(pattern(&bad), Err(FigureError::OutOfRange { what: "region", .. })));
     }
 }

@@ -152,12 +152,6 @@ impl Cmaes {
         self.sigma
     }
 
-    /// The standard deviation of the distribution in every coordinate, in the coordinates' unit.
-    #[must_use]
-    pub fn deviations(&self) -> Vec<f64> {
-        self.covariance.diagonal().iter().map(|variance| self.sigma * variance.sqrt()).collect()
-    }
-
     /// Generations told so far.
     #[must_use]
     pub fn generation(&self) -> usize {

@@ -3,6 +3,7 @@ use crate::geometry::{Polygon, convex_hull, point_in_polygon};
 use crate::random::{Component, Stream};
 use crate::trace::tests::trace_of;
 use grn_core::geometry::Vector;
+use std::sync::LazyLock;
 
 /// Robots at these bearings (degrees) and this distance from the target at (1, 2).
 fn around(bearings: &[f64], distance: f64) -> Vec<(f64, f64)> {
@@ -16,6 +17,12 @@ fn around(bearings: &[f64], distance: f64) -> Vec<(f64, f64)> {
 fn gap_deg(bearings: &[f64]) -> f64 {
     let robots = around(bearings, 0.5).into_iter().map(|(x, y)| Vector::new(x, y));
     largest_gap(Vector::new(1.0, 2.0), robots, &mut Vec::new()).to_degrees()
+}
+
+/// Without walls or stops, around a ring of half a metre.
+fn options<'a>() -> MetricsOptions<'a> {
+    static NO_WALLS: LazyLock<Walls> = LazyLock::new(Walls::default);
+    MetricsOptions { walls: &NO_WALLS, ring_radius_m: 0.5, stop_ticks: &[] }
 }
 
 const RING: [f64; 5] = [0.0, 72.0, 144.0, 216.0, 288.0];
@@ -70,7 +77,7 @@ fn forming_takes_two_unbroken_seconds() {
         .into_iter()
         .flat_map(|(count, open)| (0..count).map(move |_| ring(open)))
         .collect();
-    let metrics = Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions::default(), |_, _| Some(0.02));
+    let metrics = Metrics::of(&trace_of(&frames), &options(), |_, _| Some(0.02));
     assert_eq!(metrics.formed_at_s, Some(75.0 / 32.0));
     assert_eq!(metrics.encircled_share, Some(180.0 / 200.0));
     assert_eq!(metrics.encircled_share_by_target, Some(vec![180.0 / 200.0]));
@@ -82,8 +89,7 @@ fn forming_takes_two_unbroken_seconds() {
     assert_eq!(metrics.min_wall_clearance_m, None);
     // 64 ticks are 65 frames: one frame fewer does not form.
     let frames = |n| vec![ring(false); n];
-    let formed =
-        |n| Metrics::of(&trace_of(&frames(n)), &Walls::default(), &MetricsOptions::default(), |_, _| None).formed_at_s;
+    let formed = |n| Metrics::of(&trace_of(&frames(n)), &options(), |_, _| None).formed_at_s;
     assert_eq!((formed(64), formed(65)), (None, Some(0.0)));
 }
 
@@ -94,18 +100,54 @@ fn every_target_counts_by_itself() {
     let both = (vec![(1.0, 2.0), (4.0, 2.0)], robots.clone());
     let lost = (vec![(1.0, 2.0), (4.0, 3.0)], robots);
     let frames: Vec<_> = (0..160).map(|i| if i < 120 { both.clone() } else { lost.clone() }).collect();
-    let metrics = Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions { reach_m: 1.0 }, |_, _| None);
+    let metrics = Metrics::of(&trace_of(&frames), &options(), |_, _| None);
     assert_eq!(metrics.encircled_share_by_target, Some(vec![1.0, 0.75]));
     assert_eq!(metrics.encircled_share, Some(0.75));
-    assert_eq!((metrics.radial_error_median_m, metrics.radial_error_known_share), (None, Some(0.0)));
+    assert_eq!((metrics.radial_error_median_m, metrics.radial_error_unknown_share), (None, Some(1.0)));
 }
 
 #[test]
-fn robots_out_of_reach_do_not_encircle() {
-    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 70];
-    let at = |reach_m| Metrics::of(&trace_of(&frames), &Walls::default(), &MetricsOptions { reach_m }, |_, _| None);
-    assert_eq!((at(0.49).formed_at_s, at(0.51).formed_at_s), (None, Some(0.0)));
-    assert_eq!(at(0.49).spacing_evenness, None);
+fn an_unknown_distance_is_longer_than_any_other() {
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
+    let west_of = |limit: f64| move |p: Point<f64>, _: &[Point<f64>]| (p.x < limit).then_some(0.01);
+    // Four of five robots are west of 1.2 m, two west of 1 m.
+    let most = Metrics::of(&trace_of(&frames), &options(), west_of(1.2));
+    assert!((most.radial_error_median_m.unwrap() - 0.01).abs() < 1e-4);
+    assert_eq!((most.radial_error_p95_m, most.lost_robots, most.strayed_robots), (None, 0, 0));
+    assert!((most.radial_error_unknown_share.unwrap() - 0.2).abs() < 1e-9);
+    let few = Metrics::of(&trace_of(&frames), &options(), west_of(1.0));
+    assert_eq!(few.radial_error_median_m, None);
+}
+
+#[test]
+fn robots_are_lost_far_away_and_stray_for_a_while() {
+    // The first robot leaves after 2 s for 6 s, the second after 8 s for good; the third is broken down and far away.
+    let frames: Vec<_> = (0..14 * 32)
+        .map(|tick| {
+            let mut robots = around(&RING, 0.5);
+            robots[0].0 += if (64..256).contains(&tick) { 0.3 } else { 0.2 };
+            // Off the pattern too, but near the target.
+            robots[4] = (1.0, 2.1);
+            robots[1].1 += if tick >= 256 { 0.3 } else { 0.0 };
+            robots[2].0 -= 3.0;
+            (vec![(1.0, 2.0)], robots)
+        })
+        .collect();
+    let distance = |p: Point<f64>, targets: &[Point<f64>]| Some(((p - targets[0]).length() - 0.5).abs());
+    let stop_ticks = [None, None, Some(5)];
+    let metrics = Metrics::of(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, distance);
+    assert_eq!((metrics.lost_robots, metrics.strayed_robots), (1, 1));
+    let metrics = Metrics::of(&trace_of(&frames), &options(), distance);
+    assert_eq!((metrics.lost_robots, metrics.strayed_robots), (2, 1), "a robot that works counts");
+}
+
+#[test]
+fn a_broken_robot_does_not_encircle() {
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
+    let stop_ticks = [None, Some(100)];
+    let metrics =
+        Metrics::of(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, |_, _| None);
+    assert_eq!((metrics.formed_at_s, metrics.encircled_share), (Some(0.0), Some(0.5)));
 }
 
 #[test]
@@ -113,19 +155,19 @@ fn radial_error_clearance_and_evenness() {
     let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 70];
     let wall = [(1.8, 0.0), (2.8, 0.0), (2.8, 4.0), (1.8, 4.0)].map(|(x, y)| Vector::new(x, y));
     let walls = Walls::new(vec![Polygon::new(wall.to_vec()).unwrap()]);
-    // The pattern: the ring of radius 0.49 m, known only on the east side.
+    // The pattern: the ring of radius 0.49 m, farther away in the north.
     let distance = |p: Point<f64>, targets: &[Point<f64>]| {
         let offset = p - targets[0];
-        (offset.x > 0.0).then(|| (offset.length() - 0.49).abs() + if offset.y > 0.1 { 0.2 } else { 0.0 })
+        Some((offset.length() - 0.49).abs() + if offset.y > 0.4 { 0.2 } else { 0.0 })
     };
-    let metrics = Metrics::of(&trace_of(&frames), &walls, &MetricsOptions::default(), distance);
+    let metrics = Metrics::of(&trace_of(&frames), &MetricsOptions { walls: &walls, ..options() }, distance);
     assert!((metrics.radial_error_median_m.unwrap() - 0.01).abs() < 2e-4);
     assert!((metrics.radial_error_p95_m.unwrap() - 0.21).abs() < 2e-4);
-    assert_eq!(metrics.radial_error_known_share, Some(0.6));
+    assert_eq!(metrics.radial_error_unknown_share, Some(0.0));
     assert!((metrics.min_wall_clearance_m.unwrap() - 0.3).abs() < 1e-9);
     assert!((metrics.spacing_evenness.unwrap() - 1.0).abs() < 1e-9);
     let uneven = vec![(vec![(1.0, 2.0)], around(&[0.0, 10.0, 85.0, 160.0, 235.0, 310.0], 0.5)); 70];
-    let metrics = Metrics::of(&trace_of(&uneven), &walls, &MetricsOptions::default(), |_, _| None);
+    let metrics = Metrics::of(&trace_of(&uneven), &options(), |_, _| None);
     let gaps = [10.0, 75.0, 75.0, 75.0, 75.0, 50.0].map(|gap: f64| gap / 360.0);
     let expected = -gaps.iter().map(|g| g * libm::log(*g)).sum::<f64>() / libm::log(6.0);
     assert!((metrics.spacing_evenness.unwrap() - expected).abs() < 1e-5);

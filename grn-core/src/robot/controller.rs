@@ -123,7 +123,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         self.tick = self.tick.wrapping_add(1);
         let [east, north] = percept.position.map(S::from_millionths);
         let here = Vector::new(east, north);
-        self.knowledge.update(percept, here);
+        self.knowledge.update(percept, here, self.robot);
         let heading = heading(percept.heading);
         let wanted = self.wanted_velocity(here, percept) + reflex(&percept.proximity, heading, self.reflex);
         let (left, right) = self.drive.wheels(wanted, heading);

@@ -55,11 +55,14 @@ impl<S: Scalar> Knowledge<S> {
         self.neighbours.known()
     }
 
-    /// Takes one tick's percept in; `here` is the robot's own position.
+    /// Takes in one tick's percept of robot number `own`, which is at `here`.
     ///
     /// Of what is heard in a tick, one message's obstacle points are learned: walls stand still, and a tick has its time.
-    pub fn update(&mut self, percept: &Percept, here: Point<S>) {
+    /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
+    /// otherwise take itself for a neighbour that it must keep away from.
+    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u8) {
         let here = millimetres(here);
+        let heard = || percept.heard.iter().filter(|message| message.sender != own);
         self.grow_older(here);
         for sighting in &percept.targets {
             self.see_target(*sighting);
@@ -67,13 +70,13 @@ impl<S: Scalar> Knowledge<S> {
         for &position in &percept.obstacles {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
         }
-        for message in &percept.heard {
+        for message in heard() {
             if let Some(report) = &message.target {
                 self.hear_of_target(report);
             }
             self.neighbours.meet(message.sender, message.position, here, self.tick);
         }
-        for report in self.chosen(&percept.heard).into_iter().flat_map(|message| &message.obstacles) {
+        for report in self.chosen(heard()).into_iter().flat_map(|message| &message.obstacles) {
             self.obstacles.learn(report);
         }
         self.obstacles.settle();
@@ -81,12 +84,14 @@ impl<S: Scalar> Knowledge<S> {
 
     /// The message whose obstacle points are learned.
     ///
-    /// Robots keep their turns, with the same ones heard together and the same points told every so often. Chosen in turn,
-    /// too, some points would never be learned; multiples of the golden ratio are in step with nothing.
-    fn chosen<'m>(&self, heard: &'m [Message]) -> Option<&'m Message> {
+    /// Robots speak periodically, so the same ones are heard together again and again, and each repeats its points with a
+    /// period of its own. If the choice were periodic too, the periods could match and some points would never be learned.
+    /// Multiples of the golden ratio, modulo 1, are spread evenly and have no period.
+    fn chosen<'m>(&self, mut heard: impl Iterator<Item = &'m Message> + Clone) -> Option<&'m Message> {
         const GOLDEN_RATIO_Q32: u32 = 0x9e37_79b9;
         let share = (self.tick / BROADCAST_PERIOD).wrapping_mul(GOLDEN_RATIO_Q32);
-        heard.get(((u64::from(share) * heard.len() as u64) >> u32::BITS) as usize)
+        let count = heard.clone().count() as u64;
+        heard.nth(((u64::from(share) * count) >> u32::BITS) as usize)
     }
 
     fn grow_older(&mut self, here: Millimetres) {

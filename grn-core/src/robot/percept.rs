@@ -51,7 +51,7 @@ pub struct Percept {
     pub targets: Vec<Sighting, MAX_TARGETS>,
     /// Points on obstacles seen with own sensors (mother robots).
     pub obstacles: Vec<Millimetres, MAX_SEEN_OBSTACLES>,
-    /// Messages received since the last tick.
+    /// Messages received since the last tick. The robot's own, which some radios give back, are ignored.
     pub heard: Vec<Message, MAX_HEARD>,
 }
 

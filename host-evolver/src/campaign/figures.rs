@@ -5,34 +5,34 @@ use super::tables::{Measure, RunRow, Tables, TransferRow};
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
-use crate::figures::{self, pattern};
-use crate::files::{self, FileError, read_blob};
-use crate::model::describe;
+use crate::figures::{self, Pictures};
+use crate::files::{Contents, FileError, read_blob};
 use grn_figures::FigureError;
 use grn_optimisers::statistics::quartiles;
 use std::path::Path;
 
-/// Draws everything into the campaign's folder. Variations of a scenario are in the tables only, and so is what became of
-/// one model in one world.
-pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(), FileError> {
+/// Draws everything; `notice` hears of what cannot be drawn. Variations of a scenario are in the tables only, and so is what
+/// became of one model in one world.
+pub(super) fn draw(
+    plan: &Plan,
+    tables: &Tables,
+    campaign: &Path,
+    notice: &dyn Fn(&str),
+) -> Result<Contents, FileError> {
     let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
-    let draw = |name: &str, figure: Result<String, FigureError>| {
-        let path = campaign.join(name);
-        let svg = figure.map_err(|error| FileError::new(&path, format!("cannot be drawn: {error}")))?;
-        files::write(&path, svg)
-    };
-    for (measure, name) in [
-        (Measure::KneeF2, "f2-of-knees.svg"),
-        (Measure::BestF2, "f2.svg"),
-        (Measure::BestNodes, "nodes.svg"),
-        (Measure::KneeNodes, "nodes-of-knees.svg"),
+    let mut pictures = Pictures::default();
+    for (measure, stem) in [
+        (Measure::KneeF2, "f2-of-knees"),
+        (Measure::BestF2, "f2"),
+        (Measure::BestNodes, "nodes"),
+        (Measure::KneeNodes, "nodes-of-knees"),
     ] {
-        draw(name, boxes(plan, &scenarios, tables, measure))?;
+        pictures.add_pages(stem, boxes(plan, &scenarios, tables, measure));
     }
-    draw("convergence.svg", grn_figures::convergence(&convergence(plan, campaign)?))?;
-    for (page, figure) in rates(plan, tables).pages().iter().enumerate() {
-        let name = if page == 0 { "transfers.svg".into() } else { format!("transfers-{}.svg", page + 1) };
-        draw(&name, grn_figures::rates(figure))?;
+    pictures.add_pages("convergence", grn_figures::convergence(&convergence(plan, campaign)?));
+    let rates = rates(plan, tables);
+    if !rates.groups.is_empty() {
+        pictures.add_pages("transfers", grn_figures::rates(&rates));
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -42,18 +42,20 @@ pub(super) fn write(plan: &Plan, tables: &Tables, campaign: &Path) -> Result<(),
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            if front.iter().any(|member| member.is_feasible()) {
-                draw(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()))?;
-            }
+            pictures.add(
+                &name("pareto"),
+                figures::front(&planned_method.method.objectives(), &front, &[], &planned.scenario.ring()),
+            );
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
-            draw(&name("tree"), grn_figures::tree(&describe::syntax_tree(&network)))?;
-            draw(&name("grn"), grn_figures::grn(&describe::graph(&network)))?;
+            pictures.add(&name("tree"), Ok(figures::tree(&network)));
+            pictures.add(&name("grn"), figures::grn(&network));
             if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
-                draw(&name("pattern"), pattern(&world, &model))?;
+                pictures.add(&name("pattern"), figures::pattern(&world, &model));
             }
         }
     }
-    Ok(())
+    pictures.not_drawn.iter().for_each(|line| notice(line));
+    Ok(pictures.contents)
 }
 
 /// The run whose knee has the median f2 of a method in a scenario.
@@ -71,7 +73,7 @@ fn boxes(
     scenarios: &[&PlannedScenario],
     tables: &Tables,
     measure: Measure,
-) -> Result<String, FigureError> {
+) -> Result<Vec<String>, FigureError> {
     let is_knee = matches!(measure, Measure::KneeF2 | Measure::KneeNodes);
     let value = |run: &RunRow| {
         let violation = if is_knee { run.knee_violation } else { run.best_violation };
@@ -118,12 +120,17 @@ fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
     let is_varied =
         |row: &TransferRow| plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer);
     let mut groups: Vec<grn_figures::RateGroup> = Vec::new();
-    for row in tables.transfers.iter().filter(|row| row.runs * row.worlds > 1 && !is_varied(row)) {
+    for row in tables.transfers.iter().filter(|row| row.trials() > 1 && !is_varied(row)) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),
         };
-        let line = grn_figures::RateRow { label: row.method.clone(), rate: row.rate, interval: (row.low, row.high) };
+        let line = grn_figures::RateRow {
+            label: row.method.clone(),
+            successes: row.successes as u64,
+            trials: row.trials() as u64,
+            interval: row.low.zip(row.high),
+        };
         match groups.iter_mut().find(|group| group.title == title) {
             Some(group) => group.rows.push(line),
             None => groups.push(grn_figures::RateGroup { title, rows: vec![line] }),

@@ -5,6 +5,7 @@
 //! made from the files of the units alone.
 
 mod figures;
+mod manifest;
 mod method;
 mod plan;
 mod tables;
@@ -16,10 +17,12 @@ pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
 pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
 pub use trial::Trial;
-pub use unit::Unit;
+pub use unit::{Found, Unit};
 
 use crate::evaluation::World;
-use crate::files::{self, FileError};
+use crate::files::{self, FileError, FolderLock};
+use manifest::{BELOW, Manifest};
+use plan::slug;
 use rayon::prelude::*;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -56,7 +59,7 @@ impl FromStr for Shard {
 }
 
 /// How far a campaign has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
     /// Some runs are missing: of other shards, or it was stopped.
     Runs {
@@ -68,7 +71,7 @@ pub enum Stage {
     /// All runs are there, trials are missing: it was stopped.
     Trials,
     /// All units are there, and the tables are written.
-    Done,
+    Done(Box<Tables>),
 }
 
 impl fmt::Display for Stage {
@@ -76,26 +79,43 @@ impl fmt::Display for Stage {
         match self {
             Stage::Runs { done, of } => write!(f, "{done} of {of} runs are there"),
             Stage::Trials => write!(f, "all runs are there, some trials are not"),
-            Stage::Done => write!(f, "everything is there"),
+            Stage::Done(_) => write!(f, "everything is there"),
         }
     }
 }
 
-/// Hears of units that are done: how many evaluations of f2 each was worth.
-pub type Heard<'a> = &'a (dyn Fn(u64) + Sync);
+/// Hears how a campaign goes.
+pub trait Listener: Sync {
+    /// A unit is done that was worth so many evaluations of f2.
+    fn done(&self, evaluations: u64);
+    /// Something that the user should know.
+    fn notice(&self, text: &str);
+}
 
 /// A plan and the folder where its units are collected.
 pub struct Campaign {
     plan: Plan,
-    folder: PathBuf,
+    lock: FolderLock,
+    manifest: Manifest,
     worlds: Vec<OnceLock<World>>,
 }
 
 impl Campaign {
-    /// A campaign in a folder, which may hold some of its units already.
-    pub fn new(plan: Plan, folder: &Path) -> Campaign {
+    /// A campaign in a folder, which may hold some of its units already; `command` is told to others who want the folder.
+    ///
+    /// # Errors
+    /// A folder that somebody else writes, that cannot be written, or that holds other things or a campaign with more seeds.
+    pub fn begin(plan: Plan, folder: &Path, command: &str) -> Result<Campaign, FileError> {
+        let lock = FolderLock::take(folder, command)?;
+        let manifest = Manifest::begin(&plan, folder)?;
+        files::remove_unfinished(&lock, &BELOW)?;
+        files::probe_folder(&lock, &paths(&plan))?;
         let worlds = plan.scenarios.iter().map(|_| OnceLock::new()).collect();
-        Campaign { plan, folder: folder.to_owned(), worlds }
+        Ok(Campaign { plan, lock, manifest, worlds })
+    }
+
+    fn folder(&self) -> &Path {
+        self.lock.folder()
     }
 
     /// The plan.
@@ -116,14 +136,25 @@ impl Campaign {
     /// Takes over the units of another folder that are missing here. Returns how many runs.
     ///
     /// # Errors
-    /// A run there that was made from something else, or a file that cannot be copied.
-    pub fn merge(&self, other: &Path) -> Result<usize, FileError> {
+    /// A folder that somebody writes, a run there that was made from something else, or a file that cannot be copied.
+    pub fn merge(&self, other: &Path, listener: &dyn Listener) -> Result<usize, FileError> {
+        let resolved = |folder: &Path| folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        if resolved(other) == resolved(self.folder()) {
+            return Err(FileError::new(other, "is the campaign's own folder; name another with --merge"));
+        }
+        if !other.join("runs").is_dir() {
+            return Err(FileError::new(other, "no campaign is in this folder; name another with --merge"));
+        }
+        FolderLock::check_free(other)?;
         let mut taken = 0;
         for unit in Unit::all(&self.plan) {
-            if unit.is_done(&self.plan, other)? && !unit.is_done(&self.plan, &self.folder)? {
-                let from = other.join(unit.folder(&self.plan));
-                files::write_folder(&self.folder.join(unit.folder(&self.plan)), |to| files::copy_files(&from, to))?;
-                taken += 1;
+            match unit.find(&self.plan, other)? {
+                Found::Whole if unit.find(&self.plan, self.folder())? != Found::Whole => {
+                    unit.copy(&self.plan, other, self.folder())?;
+                    taken += 1;
+                }
+                Found::Damaged(why) => listener.notice(&format!("{why}: not taken over")),
+                _ => {}
             }
         }
         Ok(taken)
@@ -134,61 +165,128 @@ impl Campaign {
     ///
     /// # Errors
     /// A unit that was made from something else, or a file that cannot be read or written.
-    pub fn run(&self, shard: Shard, stop: &AtomicBool, heard: Heard<'_>) -> Result<Stage, FileError> {
+    pub fn run(&self, shard: Shard, stop: &AtomicBool, listener: &dyn Listener) -> Result<Stage, FileError> {
         let units = Unit::all(&self.plan);
-        let mine = units.iter().enumerate().filter(|&(place, _)| shard.holds(place)).map(|(_, &unit)| unit);
-        // Long runs first, so that no thread is left alone with one at the end.
-        let mut mine: Vec<Unit> = mine.collect();
-        mine.sort_by_key(|unit| std::cmp::Reverse(self.plan.scenarios[unit.scenario].evaluations));
-        mine.into_par_iter().with_max_len(1).try_for_each(|unit| self.run_unit(unit, stop, heard))?;
-        let mut done = 0;
-        for unit in &units {
-            done += usize::from(unit.is_done(&self.plan, &self.folder)?);
+        for name in self.runs_of_others()? {
+            listener.notice(&format!("{name}: of another state of the campaign: kept, and in no table"));
         }
+        // What is refused is refused before the first run.
+        let found: Vec<Found> =
+            units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
+        let mut mine: Vec<(Unit, Found)> = Vec::new();
+        for (place, (&unit, found)) in units.iter().zip(&found).enumerate() {
+            if shard.holds(place) {
+                mine.push((unit, found.clone()));
+            }
+        }
+        // Long runs first, so that no thread is left alone with one at the end.
+        mine.sort_by_key(|(unit, _)| std::cmp::Reverse(self.plan.scenarios[unit.scenario].evaluations));
+        let done: Vec<bool> = mine
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|(unit, found)| self.run_unit(unit, &found, stop, listener))
+            .collect::<Result<_, _>>()?;
+        let of_others =
+            found.iter().enumerate().filter(|&(place, found)| !shard.holds(place) && *found == Found::Whole);
+        let done = done.into_iter().filter(|&done| done).count() + of_others.count();
         if done < units.len() {
             return Ok(Stage::Runs { done, of: units.len() });
         }
-        let groups = Group::all(&self.plan, &self.folder)?;
+        let Some(trials) = self.trials(stop, listener)? else { return Ok(Stage::Trials) };
+        let named = trials.iter().map(|(group, world, trials)| (group.as_str(), *world, trials.clone()));
+        let tables = Tables::of(&self.plan, self.folder(), named.collect())?;
+        let mut contents = figures::draw(&self.plan, &tables, self.folder(), &|text| listener.notice(text))?;
+        contents.extend(tables.contents());
+        self.manifest.publish(self.folder(), &contents)?;
+        Ok(Stage::Done(Box::new(tables)))
+    }
+
+    /// Folders of runs of scenarios and methods that the campaign has no longer. They took long, so they are kept.
+    fn runs_of_others(&self) -> Result<Vec<String>, FileError> {
+        let runs = self.folder().join("runs");
+        if !runs.exists() {
+            return Ok(Vec::new());
+        }
+        let ours: Vec<PathBuf> = Unit::all(&self.plan).iter().map(|unit| unit.folder(&self.plan)).collect();
+        let mut others = Vec::new();
+        for (scenario, entry) in files::entries(&runs)? {
+            let methods = if entry.path().is_dir() { files::entries(&entry.path())? } else { Vec::new() };
+            for (method, _) in methods {
+                let folder = Path::new("runs").join(&scenario).join(method);
+                if !ours.iter().any(|ours| ours.starts_with(&folder)) {
+                    others.push(self.folder().join(folder).display().to_string());
+                }
+            }
+        }
+        Ok(others)
+    }
+
+    /// The trials by group and world; `None` if stopped.
+    fn trials(&self, stop: &AtomicBool, listener: &dyn Listener) -> Result<Option<Vec<Tried>>, FileError> {
+        let groups = Group::all(&self.plan, self.folder())?;
         let places = groups.iter().flat_map(|group| (0..group.worlds()).map(move |world| (group, world)));
         let places: Vec<_> = places.collect();
-        let trials: Vec<Option<Vec<Trial>>> = places
+        let trials: Vec<Option<Tried>> = places
             .par_iter()
             .with_max_len(1)
             .map(|(group, world)| {
-                let trials = group.trials(*world, &self.folder, stop)?;
-                heard(trials.as_ref().map_or(0, |trials| trials.len() as u64));
-                Ok(trials)
+                let trials = group.trials(*world, self.folder(), stop, &|text| listener.notice(text))?;
+                listener.done(trials.as_ref().map_or(0, |trials| trials.len() as u64));
+                Ok(trials.map(|trials| (group.name.to_owned(), *world, trials)))
             })
             .collect::<Result<_, FileError>>()?;
-        let Some(trials) = trials.into_iter().collect::<Option<Vec<_>>>() else { return Ok(Stage::Trials) };
-        let named = places.iter().zip(trials).map(|((group, world), trials)| (group.name, *world, trials));
-        let tables = Tables::of(&self.plan, &self.folder, named.collect())?;
-        tables.write(&self.folder)?;
-        figures::write(&self.plan, &tables, &self.folder)?;
-        files::remove_unfinished(&self.folder)?;
-        Ok(Stage::Done)
+        let trials: Option<Vec<Tried>> = trials.into_iter().collect();
+        if trials.is_some() {
+            let wanted = places.iter().map(|(group, world)| group.path(*world)).collect();
+            trial::remove_others(self.folder(), &wanted)?;
+        }
+        Ok(trials)
     }
 
-    fn run_unit(&self, unit: Unit, stop: &AtomicBool, heard: Heard<'_>) -> Result<(), FileError> {
-        if !unit.is_done(&self.plan, &self.folder)? {
+    /// Returns whether the run is there, and not stopped.
+    fn run_unit(
+        &self,
+        unit: Unit,
+        found: &Found,
+        stop: &AtomicBool,
+        listener: &dyn Listener,
+    ) -> Result<bool, FileError> {
+        if *found != Found::Whole {
             if stop.load(Ordering::Relaxed) {
-                return Ok(());
+                return Ok(false);
+            }
+            if let Found::Damaged(why) = found {
+                listener.notice(&format!("{why}: this run is done again"));
             }
             let world = self.worlds[unit.scenario]
                 .get_or_init(|| World::new(self.plan.scenarios[unit.scenario].scenario.clone()));
-            if !unit.run(&self.plan, &self.folder, world, stop)? {
-                return Ok(());
+            if !unit.run(&self.plan, self.folder(), world, stop)? {
+                return Ok(false);
             }
         }
-        heard(self.plan.scenarios[unit.scenario].evaluations as u64);
-        Ok(())
+        listener.done(self.plan.scenarios[unit.scenario].evaluations as u64);
+        Ok(true)
     }
 
     /// The tables of a campaign that is done, read back from its folder.
     ///
     /// # Errors
-    /// A missing or damaged file.
+    /// A campaign that is not finished, or a file that is missing or changed.
     pub fn tables(folder: &Path) -> Result<Tables, FileError> {
+        Manifest::check_finished(folder)?;
         Tables::read(folder)
     }
+}
+
+/// A group, the number of a world in it, and the trials made there.
+type Tried = (String, usize, Vec<Trial>);
+
+/// A path of each folder that a campaign fills.
+fn paths(plan: &Plan) -> Vec<PathBuf> {
+    let units = Unit::all(plan).into_iter().filter(|unit| unit.seed == plan.seeds);
+    let runs = units.map(|unit| unit.folder(plan).join("00-31-nodes.grn"));
+    let names = plan.transfers.iter().map(|planned| planned.name.as_str());
+    let names = names.chain(plan.scenarios.iter().map(|planned| planned.scenario.name()));
+    let trials = names.map(|name| Path::new("trials").join(slug(name)).join("000-0123456789ab.csv"));
+    runs.chain(trials).collect()
 }

@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::trial::Trial;
 use super::unit::Unit;
 use crate::evolve::{FrontMember, deployed, front_hypervolume};
-use crate::files::{self, FileError};
+use crate::files::{self, Contents, FileError};
 use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -167,11 +167,38 @@ pub struct TransferRow {
     /// Lower end of the 95 % interval: of the bootstrap over runs and worlds; Wilson's for a given model, and where every
     /// trial ended alike, then for as many trials as there are runs or worlds, whichever are more. A single trial is a
     /// fact: both ends are the rate.
-    pub low: f64,
+    pub low: Option<f64>,
     /// Upper end.
-    pub high: f64,
+    pub high: Option<f64>,
     /// Median f2 of the trials; an infeasible one counts as 2 and its violation.
     pub median_f2: f64,
+}
+
+impl TransferRow {
+    /// Trials: runs times worlds.
+    pub fn trials(&self) -> usize {
+        self.runs * self.worlds
+    }
+
+    /// The rate and its interval as a person reads them, `80.0 % (63.0 to 90.0)`; of a single trial `1 of 1`.
+    pub fn rate_words(&self) -> String {
+        match (self.low, self.high) {
+            (Some(low), Some(high)) if self.trials() > 1 => {
+                format!("{:.1} % ({:.1} to {:.1})", 100.0 * self.rate, 100.0 * low, 100.0 * high)
+            }
+            _ => format!("{} of {}", self.successes, self.trials()),
+        }
+    }
+}
+
+impl Summary {
+    /// The median and its quartiles as a person reads them, each by `number`; of a single run its value.
+    pub fn quartile_words(&self, number: impl Fn(f64) -> String) -> String {
+        match self.runs {
+            1 => number(self.median),
+            _ => format!("{} ({} to {})", number(self.median), number(self.lower), number(self.upper)),
+        }
+    }
 }
 
 /// All tables of a campaign.
@@ -222,12 +249,14 @@ impl Tables {
         Ok(tables)
     }
 
-    /// Writes `results.csv`, `summary.csv`, `comparisons.csv` and `transfers.csv`.
-    pub(super) fn write(&self, campaign: &Path) -> Result<(), FileError> {
-        files::write_csv(&campaign.join("results.csv"), &self.runs)?;
-        files::write_csv(&campaign.join("summary.csv"), &self.summaries)?;
-        files::write_csv(&campaign.join("comparisons.csv"), &self.comparisons)?;
-        files::write_csv(&campaign.join("transfers.csv"), &self.transfers)
+    /// `results.csv`, `summary.csv`, `comparisons.csv` and `transfers.csv`.
+    pub(super) fn contents(&self) -> Contents {
+        Contents::from([
+            ("results.csv".into(), files::csv_records(&self.runs)),
+            ("summary.csv".into(), files::csv_records(&self.summaries)),
+            ("comparisons.csv".into(), files::csv_records(&self.comparisons)),
+            ("transfers.csv".into(), files::csv_records(&self.transfers)),
+        ])
     }
 
     pub(super) fn read(campaign: &Path) -> Result<Tables, FileError> {
@@ -298,18 +327,18 @@ fn comparison(measure: Measure, rows: &[&RunRow], against: &[&RunRow]) -> Option
     })
 }
 
-/// The 95 % interval of a success rate over runs and worlds.
-fn interval(succeeded: &[Vec<bool>]) -> (f64, f64) {
+/// The 95 % interval of a success rate over runs and worlds; a single trial has none.
+fn interval(succeeded: &[Vec<bool>]) -> Option<(f64, f64)> {
     let worlds = succeeded.iter().map(Vec::len).max().unwrap_or(0);
     let successes = succeeded.iter().flatten().filter(|&&success| success).count();
     let count: usize = succeeded.iter().map(Vec::len).sum();
     let independent = succeeded.len().max(worlds);
     match successes {
-        _ if count == 1 => (successes as f64, successes as f64),
-        _ if succeeded.len() == 1 => wilson(successes, count),
-        0 => wilson(0, independent),
-        _ if successes == count => wilson(independent, independent),
-        _ => bootstrap_rate(succeeded),
+        _ if count <= 1 => None,
+        _ if succeeded.len() == 1 => Some(wilson(successes, count)),
+        0 => Some(wilson(0, independent)),
+        _ if successes == count => Some(wilson(independent, independent)),
+        _ => Some(bootstrap_rate(succeeded)),
     }
 }
 
@@ -334,7 +363,7 @@ fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
             runs.iter().map(|trials| trials.iter().map(|trial| trial.violation == 0.0).collect()).collect();
         let count: usize = succeeded.iter().map(Vec::len).sum();
         let successes = succeeded.iter().flatten().filter(|&&success| success).count();
-        let (low, high) = interval(&succeeded);
+        let interval = interval(&succeeded);
         let f2 = |trial: &&&Trial| if trial.violation == 0.0 { trial.f2 } else { INFEASIBLE + trial.violation };
         let all: Vec<f64> = runs.iter().flat_map(|trials| trials.iter()).map(|trial| f2(&trial)).collect();
         TransferRow {
@@ -345,8 +374,8 @@ fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
             worlds: runs.first().map_or(0, |trials| trials.len()),
             successes,
             rate: successes as f64 / count.max(1) as f64,
-            low,
-            high,
+            low: interval.map(|ends| ends.0),
+            high: interval.map(|ends| ends.1),
             median_f2: quartiles(&all).map_or(f64::NAN, |quartiles| quartiles.median),
         }
     };
@@ -358,15 +387,48 @@ mod tests {
     use super::*;
 
     #[test]
+    fn one_trial_is_one_of_one_and_one_run_is_its_value() {
+        let row = |runs, low, high| TransferRow {
+            transfer: "t".into(),
+            from: String::new(),
+            method: "m".into(),
+            runs,
+            worlds: 1,
+            successes: runs,
+            rate: 1.0,
+            low,
+            high,
+            median_f2: 0.1,
+        };
+        assert_eq!(row(1, None, None).rate_words(), "1 of 1");
+        assert_eq!(row(30, Some(0.88), Some(1.0)).rate_words(), "100.0 % (88.0 to 100.0)");
+        let summary = |runs| Summary {
+            scenario: "s".into(),
+            method: "m".into(),
+            measure: Measure::BestF2,
+            runs,
+            feasible: runs,
+            lower: 1.0,
+            median: 2.0,
+            upper: 3.0,
+        };
+        let number = |value: f64| format!("{value}");
+        assert_eq!(
+            (summary(1).quartile_words(number), summary(3).quartile_words(number)),
+            ("2".into(), "2 (1 to 3)".into())
+        );
+    }
+
+    #[test]
     fn intervals_tell_what_was_sampled() {
-        assert_eq!(interval(&[vec![true]]), (1.0, 1.0));
-        let (low, high) = interval(&[vec![true, false, true, true]]);
+        assert_eq!(interval(&[vec![true]]), None, "one trial tells of no spread");
+        let (low, high) = interval(&[vec![true, false, true, true]]).unwrap();
         assert!(low < 0.75 && 0.75 < high);
-        let (low, high) = interval(&vec![vec![false; 200]; 30]);
+        let (low, high) = interval(&vec![vec![false; 200]; 30]).unwrap();
         assert!(low == 0.0 && (0.015..0.02).contains(&high), "30 runs of 200 worlds are not 6000 trials: {high}");
-        let (low, high) = interval(&vec![vec![true]; 30]);
+        let (low, high) = interval(&vec![vec![true]; 30]).unwrap();
         assert!((0.88..0.89).contains(&low) && high == 1.0, "{low}");
-        let (low, high) = interval(&[vec![true, false], vec![true, true], vec![false, false]]);
+        let (low, high) = interval(&[vec![true, false], vec![true, true], vec![false, false]]).unwrap();
         assert!(low < 0.5 && 0.5 < high);
     }
 }

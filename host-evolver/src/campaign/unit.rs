@@ -3,11 +3,13 @@
 use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
 use crate::evaluation::World;
-use crate::evolve::{FrontMember, Milestone, deployed};
-use crate::files::{self, FileError};
+use crate::evolve::{FrontMember, Milestone};
+use crate::files::{self, Contents, FileError, Ledger};
 use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::results;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -23,6 +25,19 @@ struct Manifest {
     evaluations: usize,
     method: Method,
     seed: u64,
+    /// The run's files with the SHA-256 of each.
+    files: Ledger,
+}
+
+/// What there is of a run in a folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// All of it, as it was written.
+    Whole,
+    /// Something of it, but not all, or not as it was written: where, and what is wrong.
+    Damaged(String),
+    /// Nothing.
+    Nothing,
 }
 
 /// A run by its places in the plan.
@@ -54,30 +69,47 @@ impl Unit {
     fn manifest(self, plan: &Plan) -> Manifest {
         let planned = &plan.scenarios[self.scenario];
         Manifest {
-            grn: env!("CARGO_PKG_VERSION").into(),
+            grn: files::VERSION.into(),
             scenario: planned.scenario.name().into(),
             scenario_sha256: files::sha256(planned.scenario.to_toml()),
             evaluations: planned.evaluations,
             method: plan.methods[self.method].method.clone(),
             seed: self.seed,
+            files: Ledger::default(),
         }
     }
 
-    /// Whether the run is in a campaign's folder.
+    /// What there is of the run in a campaign's folder.
     ///
     /// # Errors
-    /// A run with this name that was made from something else.
-    pub fn is_done(self, plan: &Plan, campaign: &Path) -> Result<bool, FileError> {
-        let path = campaign.join(self.folder(plan)).join(MANIFEST);
-        if !path.exists() {
-            return Ok(false);
+    /// A run with this name that was made from something else, or by another version.
+    pub fn find(self, plan: &Plan, campaign: &Path) -> Result<Found, FileError> {
+        let folder = campaign.join(self.folder(plan));
+        if !folder.exists() {
+            return Ok(Found::Nothing);
         }
-        match files::difference(&self.manifest(plan), &files::read_json(&path)?) {
-            None => Ok(true),
-            Some(difference) => {
-                let way_out = "choose another folder with --out, or delete this run";
-                Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")))
+        let path = folder.join(MANIFEST);
+        let damaged = |fault: &dyn fmt::Display| Ok(Found::Damaged(fault.to_string()));
+        if !path.exists() {
+            return damaged(&format_args!("{}: not whole, {MANIFEST} is missing", folder.display()));
+        }
+        // A manifest that cannot be read says nothing of what the run was made from.
+        let found: Manifest = match files::check_version(&path).and_then(|()| files::read_json(&path)) {
+            Ok(found) => found,
+            Err(error) if error.is_damage() => return damaged(&error),
+            Err(error) => return Err(error),
+        };
+        let ours = Manifest { files: found.files.clone(), ..self.manifest(plan) };
+        if let Some(difference) = files::difference(&ours, &found) {
+            let way_out = "choose another folder with --out, or delete this run";
+            return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")));
+        }
+        match found.files.first_damaged(&folder) {
+            Some(name) => damaged(&format_args!("{}: missing or changed", folder.join(name).display())),
+            None if results::ALWAYS.iter().any(|needed| !found.files.names().any(|name| name == *needed)) => {
+                damaged(&format_args!("{}: does not tell of all files", path.display()))
             }
+            None => Ok(Found::Whole),
         }
     }
 
@@ -88,27 +120,46 @@ impl Unit {
     pub fn run(self, plan: &Plan, campaign: &Path, world: &World, stop: &AtomicBool) -> Result<bool, FileError> {
         let planned = &plan.scenarios[self.scenario];
         let method = &plan.methods[self.method].method;
-        let Some(outcome) = method.run(world, planned.evaluations, self.seed, stop) else { return Ok(false) };
-        let place = campaign.join(self.folder(plan));
-        files::write_folder(&place, |folder| self.write(plan, folder, &outcome))?;
+        let Some(Outcome { front, history }) = method.run(world, planned.evaluations, self.seed, stop) else {
+            return Ok(false);
+        };
+        let morphogen = planned.scenario.morphogen();
+        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
+        let (contents, _) = results::contents(&method.objectives(), &front, &history, blob_of, "")?;
+        self.put(plan, &campaign.join(self.folder(plan)), contents)?;
         Ok(true)
     }
 
-    fn write(self, plan: &Plan, folder: &Path, outcome: &Outcome) -> Result<(), FileError> {
-        let morphogen = plan.scenarios[self.scenario].scenario.morphogen();
-        let mut blobs = Vec::new();
-        for (place, member) in outcome.front.iter().enumerate() {
-            let blob = deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
-            let name = format!("{place:02}-{}-nodes.grn", member.nodes);
-            if place == deployed(&outcome.front) {
-                files::write_blob(&folder.join("knee.grn"), &blob)?;
-            }
-            files::write_blob(&folder.join(&name), &blob)?;
-            blobs.push(name);
+    /// Takes the run over from another campaign's folder where it is whole.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn copy(self, plan: &Plan, from: &Path, to: &Path) -> Result<(), FileError> {
+        let source = from.join(self.folder(plan));
+        let manifest: Manifest = files::read_json(&source.join(MANIFEST))?;
+        let mut contents = Contents::new();
+        for name in manifest.files.names() {
+            let path = source.join(name);
+            let content = std::fs::read(&path).map_err(|error| FileError::from_system(path, "read", error))?;
+            contents.insert(name.to_owned(), content);
         }
-        results::write_front(folder, &plan.methods[self.method].method.objectives(), &outcome.front, &blobs)?;
-        results::write_history(folder, &outcome.history)?;
-        files::write(&folder.join(MANIFEST), files::json(&self.manifest(plan)))
+        self.put(plan, &to.join(self.folder(plan)), contents)
+    }
+
+    /// Puts the files of a run in place, which is empty or holds a damaged run. The manifest comes last.
+    fn put(self, plan: &Plan, place: &Path, contents: Contents) -> Result<(), FileError> {
+        let manifest = Manifest { files: Ledger::of(&contents), ..self.manifest(plan) };
+        if place.exists() {
+            clear(place)?;
+        }
+        let mut files: Vec<_> = contents.into_iter().collect();
+        files.push((MANIFEST.into(), files::json(&manifest).into_bytes()));
+        if !place.exists() {
+            return files::write_folder(place, |folder| {
+                files.iter().try_for_each(|(name, content)| files::write(&folder.join(name), content))
+            });
+        }
+        files.iter().try_for_each(|(name, content)| files::write(&place.join(name), content))
     }
 
     /// The front of a run that is done.
@@ -126,4 +177,25 @@ impl Unit {
     pub fn history(self, plan: &Plan, campaign: &Path) -> Result<Vec<Milestone>, FileError> {
         results::read_history(&campaign.join(self.folder(plan)))
     }
+}
+
+/// Deletes what is left of a damaged run, manifest first, and the folder if nothing else is in it. What no run writes stays.
+fn clear(place: &Path) -> Result<(), FileError> {
+    let is_model = |name: &str| {
+        let parts = name.strip_suffix("-nodes.grn").and_then(|name| name.split_once('-'));
+        parts.is_some_and(|(place, nodes)| place.parse::<u32>().is_ok() && nodes.parse::<u32>().is_ok())
+    };
+    let names = files::entries(place)?.into_iter().map(|(name, _)| name);
+    let ours = names.filter(|name| is_model(name) || results::ALWAYS.contains(&name.as_str()));
+    for name in std::iter::once(MANIFEST.to_owned()).chain(ours) {
+        match std::fs::remove_file(place.join(&name)) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(FileError::from_system(place.join(name), "replaced", error));
+            }
+            _ => {}
+        }
+    }
+    // Fails where something else lies in it, and that is meant.
+    let _ = std::fs::remove_dir(place);
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, output};
-use crate::campaign::{Campaign, Measure, Plan, Shard, Stage, Tables};
+use super::{Answer, Failure, interrupt, output, this_command};
+use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,8 @@ const SELDOM: Duration = Duration::from_secs(30);
 pub struct Arguments {
     /// The campaign: scenarios, methods, models, transfers, seeds.
     file: PathBuf,
-    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    /// Folder of the campaign, new, empty, or with this campaign, which may have got more seeds: runs that are there whole are
+    /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads to work with; the results do not depend on it [default: all cores].
@@ -31,25 +32,23 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let plan = Plan::load(&arguments.file)?;
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
-    let campaign = Campaign::new(plan, &folder);
+    let stop = interrupt::watch()?;
+    let campaign = Campaign::begin(plan, &folder, &this_command())?;
+    let progress = Progress::new(campaign.work());
     for other in &arguments.merge {
         if !other.is_dir() {
             return Err(Failure::Input(format!("--merge {}: there is no such folder", other.display())));
         }
-        let taken = campaign.merge(other)?;
-        output::notice(format_args!("{taken} runs taken over from {}", other.display()));
+        let taken = campaign.merge(other, &progress)?;
+        progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let stop = interrupt::watch()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
-    let progress = Progress::new(campaign.work());
-    let stage = pool.install(|| {
-        campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &|evaluations| progress.add(evaluations))
-    })?;
+    let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
     match stage {
-        Stage::Done => {
-            output::report(text(&Campaign::tables(&folder)?));
+        Stage::Done(tables) => {
+            output::report(text(&tables));
             output::report(format!("\ntables and figures in {}", folder.display()));
             Ok(Answer::Yes)
         }
@@ -76,8 +75,14 @@ impl Progress {
         bar.enable_steady_tick(Duration::from_millis(500));
         Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
     }
+}
 
-    fn add(&self, evaluations: u64) {
+impl Listener for Progress {
+    fn notice(&self, text: &str) {
+        self.bar.suspend(|| output::notice(text));
+    }
+
+    fn done(&self, evaluations: u64) {
         self.bar.inc(evaluations);
         let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
@@ -105,8 +110,7 @@ fn text(tables: &Tables) -> String {
             "median (quartiles)"
         );
         for row in tables.summaries.iter().filter(|row| row.measure == measure) {
-            let [lower, median, upper] = [row.lower, row.median, row.upper].map(|value| number(measure, value));
-            let quartiles = format!("{median} ({lower} to {upper})");
+            let quartiles = row.quartile_words(|value| number(measure, value));
             let feasible = format!("{}/{}", row.feasible, row.runs);
             text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
         }
@@ -127,13 +131,10 @@ fn text(tables: &Tables) -> String {
         );
     }
     if !tables.transfers.is_empty() {
-        text +=
-            &format!("\n{:<28}{:<28}{:<26}{:>9}  {}\n", "tried in", "model", "evolved for", "success", "95 % interval");
+        text += &format!("\n{:<28}{:<28}{:<26}{}\n", "tried in", "model", "evolved for", "success (95 % interval)");
     }
     for row in &tables.transfers {
-        let interval = format!("{:.1} to {:.1} %", 100.0 * row.low, 100.0 * row.high);
-        text +=
-            &format!("{:<28}{:<28}{:<26}{:>7.1} %  {interval}\n", row.transfer, row.method, row.from, 100.0 * row.rate);
+        text += &format!("{:<28}{:<28}{:<26}{}\n", row.transfer, row.method, row.from, row.rate_words());
     }
     text
 }

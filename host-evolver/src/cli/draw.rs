@@ -39,6 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     };
     let out = arguments.out.clone().or_else(|| (!arguments.json).then(default));
     if let Some(out) = &out {
+        files::probe(out)?;
         let svg = figures::pattern(&world, &model).map_err(about(arguments.scenario.display()))?;
         files::write(out, svg)?;
     }

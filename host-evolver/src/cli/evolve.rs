@@ -1,16 +1,19 @@
 //! `grn evolve`.
 
-use super::simulate::{DEFAULT_ROBOTS, table, usual_config, watched, write_folder};
-use super::{Answer, Failure, about, interrupt, output};
+use super::simulate::{self, DEFAULT_ROBOTS, table, usual_config, watched};
+use super::{Answer, Failure, about, interrupt, output, this_command};
 use crate::evaluation::World;
 use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
+use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
+use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
-use crate::run::{Manifest, RunFolder};
+use crate::run::{Manifest, Results, RunFolder};
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::ErrorKind;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -26,7 +29,7 @@ pub struct Arguments {
     /// Threads to work with; the result does not depend on it [default: all cores].
     #[arg(long)]
     threads: Option<NonZeroUsize>,
-    /// Budget: evaluations of f2.
+    /// Budget: evaluations of f2; with --resume it may be larger than before.
     #[arg(long, default_value_t = Settings::default().evaluations)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
@@ -38,10 +41,10 @@ pub struct Arguments {
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE)]
     scale: f32,
-    /// Folder of the run [default: runs/SCENARIO-seed-N, or the next free name].
+    /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Continue the run in the folder.
+    /// Continue the run in the folder, to the same files as if it had never stopped.
     #[arg(long)]
     resume: bool,
 }
@@ -68,23 +71,28 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Err(Failure::Input(format!("--scale {}: a number from 0.01 to 10 is needed", arguments.scale)));
     }
     let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale);
-    let folder = folder(arguments, scenario.name());
+    let stop = interrupt::watch()?;
     // Settings are checked before anything is written.
     let world = World::new(scenario.clone());
     Search::new(&world, settings.clone(), None).map_err(about("--evaluations"))?;
-    let (run, state) = if arguments.resume {
-        RunFolder::resume(&folder, &manifest, &scenario)?
+    let folder = folder(arguments, scenario.name())?;
+    let (mut run, state) = if arguments.resume {
+        RunFolder::resume(&folder, &this_command(), manifest, &scenario)?
     } else {
-        (RunFolder::create(&folder, &manifest, &scenario)?, None)
+        (RunFolder::create(&folder, &this_command(), manifest, &scenario)?, None)
     };
+    run.notices().iter().for_each(output::notice);
     let mut search = Search::new(&world, settings.clone(), state)?;
-    let stop = interrupt::watch()?;
     search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
-    let knee = run.finish(&search, &world, arguments.scale)?;
     let front = search.front();
+    let is_feasible = front.iter().all(|member| member.is_feasible());
+    let Results { mut contents, knee, not_drawn } = run.results(&search, &world, arguments.scale)?;
+    run.add(&contents)?;
+    not_drawn.iter().for_each(output::notice);
     output::report(front_table(&settings.objectives, &front));
     output::report(format!("\nresults in {}\n", folder.display()));
-    if front.iter().any(|member| !member.is_feasible()) {
+    if !is_feasible {
+        run.finish(&contents)?;
         output::report(
             "infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations",
         );
@@ -93,25 +101,40 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
     let simulation = watched(&knee, &scenario, config, NumberType::F32, &stop)?;
-    write_folder(&run.path("simulation"), &simulation, &scenario, &knee)?;
+    for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
+        contents.insert(format!("simulation/{name}"), content);
+    }
+    run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
 
-/// The folder asked for, else the first of runs/NAME-seed-N, runs/NAME-seed-N-2, … that is free, or that is to be resumed.
-fn folder(arguments: &Arguments, name: &str) -> PathBuf {
+/// The folder asked for, else the first of runs/NAME-seed-N, runs/NAME-seed-N-2, … that is free and is made here, so that no
+/// other run chooses the same; or the first that is to be resumed.
+fn folder(arguments: &Arguments, name: &str) -> Result<PathBuf, Failure> {
     if let Some(out) = &arguments.out {
-        return out.clone();
+        return Ok(out.clone());
     }
-    let first = Path::new("runs").join(format!("{name}-seed-{}", arguments.seed));
+    let runs = Path::new("runs");
+    let first = runs.join(format!("{name}-seed-{}", arguments.seed));
+    if arguments.resume {
+        return Ok(first);
+    }
+    let cannot = |folder: &Path, error| FileError::from_system(folder, "written", error);
+    std::fs::create_dir_all(runs).map_err(|error| cannot(runs, error))?;
     let mut folder = first.clone();
     let mut number = 1;
-    while folder.exists() && !arguments.resume {
-        number += 1;
-        folder = PathBuf::from(format!("{}-{number}", first.display()));
+    loop {
+        match std::fs::create_dir(&folder) {
+            Ok(()) => return Ok(folder),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                number += 1;
+                folder = PathBuf::from(format!("{}-{number}", first.display()));
+            }
+            Err(error) => return Err(cannot(&folder, error).into()),
+        }
     }
-    folder
 }
 
 fn search_on(
@@ -180,7 +203,7 @@ fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {
     for member in front {
         let further: String = member.further.iter().map(|value| format!("{value:<13.5}")).collect();
         let (nodes, f2, knee) = (member.nodes, member.f2, member.knee.to_string());
-        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression());
+        text += &format!("\n{nodes:>5}  {f2:<9.5}{further}{knee:<15}{}", member.expression(Digits::Four));
     }
     text
 }

@@ -102,6 +102,11 @@ impl<E: Error + 'static> From<E> for Failure {
     }
 }
 
+/// The command line as it was given, for whoever wants a folder that it writes.
+fn this_command() -> String {
+    std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+}
+
 /// Prefixes an error that does not know which file it is about.
 fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
     move |error| Failure::new(error.into().as_ref()).about(place)

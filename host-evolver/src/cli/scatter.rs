@@ -28,6 +28,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let scenario = Scenario::load(&arguments.scenario)?;
+    if let Some(out) = &arguments.out {
+        files::probe(out)?;
+    }
     let radius = [arguments.radius[0], arguments.radius[1]];
     let Arguments { seed, density, clearance, .. } = *arguments;
     let world = scenario.with_random_obstacles(&RandomObstacles { seed, density, radius, clearance })?;

@@ -4,6 +4,7 @@ use super::{Answer, Failure, about, output};
 use crate::evaluation::Model;
 use crate::files::read_blob;
 use crate::model::describe;
+use crate::model::notation::Digits;
 use grn_core::blob::{Blob, FORMAT_VERSION};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -46,11 +47,6 @@ fn identity(blob: &Blob) -> String {
     blob.identity().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Nodes of the syntax tree, functions and terminals.
-fn nodes(tree: &grn_figures::SyntaxTree) -> usize {
-    1 + tree.children.iter().map(nodes).sum::<usize>()
-}
-
 fn as_json(blob: &Blob, bytes: u64) -> Value {
     let derived = derived(blob);
     let gains = &blob.gains;
@@ -59,10 +55,11 @@ fn as_json(blob: &Blob, bytes: u64) -> Value {
         "format_version": FORMAT_VERSION,
         "bytes": bytes,
         "genes": blob.network.genes().len(),
-        "nodes": nodes(&describe::syntax_tree(&blob.network)),
+        "nodes": describe::tree_size(&blob.network),
         "steepness": blob.network.steepness(),
         "thetas": blob.network.genes().iter().map(|gene| gene.theta).collect::<Vec<_>>(),
-        "equations": describe::equations(&blob.network),
+        "expression": describe::expression(&blob.network, Digits::All),
+        "equations": describe::equations(&blob.network, Digits::All),
         "level": derived.as_ref().map(|d| d.level),
         "contrast": derived.as_ref().map(|d| d.contrast),
         "ring_radius_m": derived.as_ref().and_then(|d| d.ring_radius_m),
@@ -88,14 +85,15 @@ fn as_json(blob: &Blob, bytes: u64) -> Value {
 
 fn as_text(blob: &Blob, bytes: u64) -> String {
     let genes = blob.network.genes().len();
-    let tree = describe::syntax_tree(&blob.network);
     let mut lines = vec![format!(
         "controller {} · {bytes} bytes, format {FORMAT_VERSION} · {genes} genes, {} nodes",
         identity(blob),
-        nodes(&tree)
+        describe::tree_size(&blob.network)
     )];
     lines.push(String::new());
-    lines.extend(describe::equations(&blob.network));
+    lines.push(describe::expression(&blob.network, Digits::Four));
+    lines.push(String::new());
+    lines.extend(describe::equations(&blob.network, Digits::Four));
     lines.push(format!("sig(x, θ) = 1 / (1 + exp(-{} (x - θ)))", blob.network.steepness()));
     lines.push(String::new());
     lines.push(describe::tree_text(&blob.network));

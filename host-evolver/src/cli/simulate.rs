@@ -1,11 +1,11 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, output};
+use super::{Answer, Failure, about, interrupt, output, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
-use crate::files::{self, read_blob};
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, Simulation, SimulationError};
+use crate::files::{self, Contents, FolderLock, read_blob};
+use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
@@ -23,7 +23,20 @@ const DEFAULT_EMULATED: usize = 4;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
 pub const DEFAULT_SPEED: f64 = 0.03;
 
+const BARS: &str = "\
+A run works (exit code 0) if all of this holds:
+  encircled         every target, in at least 98 % of the moments after the swarm formed
+  radial error      its median is below 10 % of the ring's radius; unknown distances are longer than any other
+  distance unknown  in at most 5 % of the robots' moments: no point of the pattern is found, or only one farther than two
+                    ring radii from every target, on a contour that follows walls
+  robots lost       none is off the pattern at the end: farther from it than half a ring radius and from every target
+                    than 1.5 ring radii, for 5 s already
+  robots strayed    none was off the pattern for 5 s and came back
+  wall contacts     none
+  peer contacts     at most one for each robot";
+
 #[derive(clap::Args)]
+#[command(after_help = BARS)]
 pub struct Arguments {
     /// The controller.
     blob: PathBuf,
@@ -84,10 +97,13 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         ..usual_config(&blob, arguments.robots)
     };
     let stop = interrupt::watch()?;
+    let lock = arguments.out.as_deref().map(take).transpose()?;
     let simulation = simulated(arguments, &blob, &scenario, config, &stop)
         .map_err(|failure| failure.about(arguments.blob.display()))?;
-    if let Some(folder) = &arguments.out {
-        write_folder(folder, &simulation, &scenario, &blob)?;
+    if let Some(lock) = &lock {
+        for (name, content) in files(&simulation, &scenario, &blob)? {
+            files::write(&lock.folder().join(name), content)?;
+        }
     }
     if arguments.json {
         output::product_json(&as_json(&simulation, arguments.number))?;
@@ -159,18 +175,33 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
-/// Writes trace, metrics and picture of a run.
-pub fn write_folder(folder: &Path, simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<(), Failure> {
+/// Trace, metrics and picture of a run, by the names of their files.
+pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
     let number = None;
-    files::write(&folder.join("trace.bin"), simulation.trace.encode())?;
     let mut csv = Vec::new();
-    simulation.trace.to_csv(&mut csv).map_err(about(folder.join("trace.csv").display()))?;
-    files::write(&folder.join("trace.csv"), csv)?;
+    simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
     let metrics = serde_json::to_string_pretty(&metrics_json(simulation, number))? + "\n";
-    files::write(&folder.join("metrics.json"), metrics)?;
-    let svg = figures::run(simulation, scenario, blob).map_err(about(folder.join("trace.svg").display()))?;
-    files::write(&folder.join("trace.svg"), svg)?;
-    Ok(())
+    let mut contents = Contents::from([
+        ("trace.bin".into(), simulation.trace.encode()),
+        ("trace.csv".into(), csv),
+        ("metrics.json".into(), metrics.into_bytes()),
+    ]);
+    match figures::run(simulation, scenario, blob) {
+        Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
+        Err(error) => output::notice(format_args!("no trace.svg: {error}")),
+    }
+    Ok(contents)
+}
+
+/// Takes the folder of `--out` before anything is computed for it.
+fn take(folder: &Path) -> Result<FolderLock, Failure> {
+    let manifest = folder.join("manifest.json");
+    if manifest.exists() {
+        let fault =
+            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
+        return Err(about(manifest.display())(fault));
+    }
+    Ok(FolderLock::take(folder, &this_command())?)
 }
 
 fn as_json(simulation: &Simulation, number: NumberType) -> serde_json::Value {
@@ -208,12 +239,28 @@ pub fn table(simulation: &Simulation) -> String {
         ),
         (
             "median radial error / ring",
-            percent(simulation.radial_error_share()),
+            match simulation.radial_error_share() {
+                None if metrics.formed_at_s.is_some() => "unknown".into(),
+                share => percent(share),
+            },
             format!("below {:.0} %", ENOUGH_ACCURACY * 100.0),
             mark(verdict.accurate),
         ),
+        (
+            "distance unknown",
+            percent(metrics.radial_error_unknown_share),
+            format!("at most {:.0} %", ENOUGH_UNKNOWN * 100.0),
+            mark(verdict.known),
+        ),
+        ("robots lost", metrics.lost_robots.to_string(), "none".into(), mark(verdict.none_lost)),
+        ("robots strayed", metrics.strayed_robots.to_string(), "none".into(), mark(verdict.none_strayed)),
         ("wall contacts", metrics.wall_contacts.to_string(), "none".into(), mark(verdict.clear_of_walls)),
-        ("peer contacts", metrics.peer_contacts.to_string(), String::new(), ""),
+        (
+            "peer contacts",
+            metrics.peer_contacts.to_string(),
+            format!("at most {}", simulation.allowed_peer_contacts()),
+            mark(verdict.clear_of_peers),
+        ),
         ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
         ("works", String::new(), String::new(), mark(verdict.works())),
     ];

@@ -24,7 +24,7 @@ pub(super) enum Component {
     Leaks,
 }
 
-/// A model at a moment, as the follower looks at it.
+/// A model at a snapshot, as the follower looks at it.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) model: &'a Model,
@@ -77,7 +77,7 @@ impl<M: Medium> Follower<M> {
         }
     }
 
-    /// Forgets the last model and moment.
+    /// Forgets the last model and snapshot.
     pub(super) fn begin(&mut self) {
         if self.view == u32::MAX || self.component > u32::MAX / 2 {
             self.known.fill(0);

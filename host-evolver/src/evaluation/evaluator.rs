@@ -1,4 +1,14 @@
-//! Judging models: no more than it takes to see who wins.
+//! Evaluating models, no further than it takes to see which ones win.
+//!
+//! How several models are evaluated together, for the search and for CMA-ES:
+//!
+//! 1. Every model starts with a bound: the f2 and violation it would have if it did as well as possible at every snapshot.
+//! 2. The model with the best bound is evaluated at one more snapshot, and its bound rises to what is now known.
+//! 3. A model whose bound is the best and that has been evaluated at every snapshot is the best: nobody can beat it.
+//! 4. It ends when as many winners are found as are wanted, or the best bound is worse than a rival's value.
+//!
+//! This is racing (Maron and Moore 1994, *Hoeffding races*): candidates drop out as soon as they are sure to lose. Here the
+//! bounds are exact instead of statistical, so the winners and their values are those of whole evaluations, bit for bit.
 
 use super::contour::View;
 use super::error_table::ErrorTable;
@@ -8,24 +18,24 @@ use super::tracer::{Tracer, error_table_of};
 use super::world::{Snapshot, World};
 use crate::model::tree::Tree;
 
-/// Judges models in one world; one per thread.
+/// Evaluates models in one world; one per thread.
 ///
-/// Moments at which recent models did badly come first, so that a model that loses does so soon. What a model is worth
-/// does not depend on it: values are summed in the order of time.
+/// The order of snapshots is learned: those at which recent models did badly come first, so that a losing model drops out
+/// early. Values do not depend on that order, because they are summed in the order of time.
 pub struct Evaluator<'w> {
     world: &'w World,
     tracer: Tracer<'w>,
-    /// How badly models have done of late at each moment.
-    hardness: Vec<f64>,
+    /// For each snapshot how badly recent models did there: an exponential average of f2 and weighted violation.
+    difficulty: Vec<f64>,
 }
 
 impl<'w> Evaluator<'w> {
-    /// A evaluator for `world`.
+    /// An evaluator for `world`.
     pub fn new(world: &'w World) -> Self {
-        Evaluator { world, tracer: Tracer::new(world), hardness: vec![0.0; world.snapshots().len()] }
+        Evaluator { world, tracer: Tracer::new(world), difficulty: vec![0.0; world.snapshots().len()] }
     }
 
-    /// The world models are judged in.
+    /// The world models are evaluated in.
     pub fn world(&self) -> &'w World {
         self.world
     }
@@ -38,104 +48,105 @@ impl<'w> Evaluator<'w> {
 
     /// Evaluates a model over all snapshots.
     pub fn evaluate(&mut self, model: &Model) -> Evaluation {
-        let mut case = Case::new(model, self);
-        while !case.is_closed() {
-            case.look_on(self);
+        let mut evaluation = PartialEvaluation::new(model, self);
+        while !evaluation.is_complete() {
+            evaluation.advance(self);
         }
-        case.at_best
+        evaluation.bound
     }
 
-    /// Evaluates several models until it is sure which are the `kept` best of them that are as good as the rival; `None`
-    /// stands for one without a pattern. Only their values are exact; a model that is worse than they or the rival may
-    /// get any value between theirs and its own.
+    /// Evaluates several models until it is sure which are the `wanted` best of those at least as good as the rival.
+    /// `None` stands for a model without a pattern.
     ///
-    /// The model that is best as far as is known is looked at next, so the others get no more attention than it takes
-    /// to see that they are worse.
+    /// The values of these best ones are exact. Another model's value is a bound: never better than the winners' or the
+    /// rival's, never worse than its own.
     pub fn evaluate_best(
         &mut self,
         models: &[Option<Model>],
-        kept: usize,
+        wanted: usize,
         rival: Option<&Evaluation>,
     ) -> Vec<Evaluation> {
-        let mut cases: Vec<Case<'_>> = models.iter().flatten().map(|model| Case::new(model, self)).collect();
-        let mut running: Vec<usize> = (0..cases.len()).collect();
-        let mut found = 0;
-        while found < kept {
-            // Among equals those not closed yet come first: they may turn out worse.
-            let key = |place: &usize| (&cases[running[*place]].at_best, cases[running[*place]].is_closed());
+        let mut race: Vec<PartialEvaluation<'_>> =
+            models.iter().flatten().map(|model| PartialEvaluation::new(model, self)).collect();
+        let mut running: Vec<usize> = (0..race.len()).collect();
+        let mut winners = 0;
+        while winners < wanted {
+            // Of equal bounds incomplete ones come first, since they may still rise.
+            let key = |place: &usize| (&race[running[*place]].bound, race[running[*place]].is_complete());
             let order = |a: &usize, b: &usize| key(a).0.order(key(b).0).then(key(a).1.cmp(&key(b).1));
-            let Some(best) = (0..running.len()).min_by(order) else { break };
-            let case = &mut cases[running[best]];
-            if rival.is_some_and(|rival| !case.at_best.is_as_good_as(rival)) {
+            let Some(leader) = (0..running.len()).min_by(order) else { break };
+            let leading = &mut race[running[leader]];
+            if rival.is_some_and(|rival| !leading.bound.is_as_good_as(rival)) {
                 break;
             }
-            if case.is_closed() {
-                running.remove(best);
-                found += 1;
+            if leading.is_complete() {
+                running.remove(leader);
+                winners += 1;
             } else {
-                case.look_on(self);
+                leading.advance(self);
             }
         }
-        let mut cases = cases.into_iter();
-        let mut value = |_: &Model| cases.next().map_or(Evaluation::NO_PATTERN, |case| case.at_best);
+        let mut bounds = race.into_iter().map(|evaluation| evaluation.bound);
+        let mut value = |_: &Model| bounds.next().unwrap_or(Evaluation::NO_PATTERN);
         models.iter().map(|model| model.as_ref().map_or(Evaluation::NO_PATTERN, &mut value)).collect()
     }
 
-    fn learn(&mut self, place: usize, moment: Evaluation) {
-        let badness = moment.f2 + VIOLATION_WEIGHT * moment.violation;
-        self.hardness[place] += LEARNING_RATE * (badness - self.hardness[place]);
+    fn learn(&mut self, place: usize, found: Evaluation) {
+        let badness = found.f2 + VIOLATION_WEIGHT * found.violation;
+        self.difficulty[place] += LEARNING_RATE * (badness - self.difficulty[place]);
     }
 }
 
-/// How much the last model counts for how hard a moment is.
+/// The weight of the latest model in a snapshot's difficulty.
 const LEARNING_RATE: f64 = 0.3;
-/// How much harder a violation makes a moment than as much f2: most rivals are feasible.
+/// How much more a violation adds to a snapshot's difficulty than an equal f2: Deb's rule looks at it first.
 const VIOLATION_WEIGHT: f64 = 10.0;
 
-/// How hard a moment is at which at least every other model is lost.
-const LOST_AS_A_RULE: f64 = (WORST_F2 + VIOLATION_WEIGHT) / 2.0;
+/// The difficulty of a snapshot at which every second model encloses no target.
+const USUALLY_LOST: f64 = (WORST_F2 + VIOLATION_WEIGHT) / 2.0;
 
-/// What is known so far of a model.
-struct Case<'m> {
+/// A model evaluated at some of the snapshots.
+struct PartialEvaluation<'m> {
     model: &'m Model,
+    /// `Some(None)` if no table is accurate enough for this model.
     table: Option<Option<ErrorTable>>,
-    /// What the model is worth at each moment, as far as it is known.
-    moments: Vec<Option<Evaluation>>,
-    /// Moments to look at.
-    ahead: Vec<usize>,
-    /// Moments to look at on the fine lattice after those.
+    /// The value at each snapshot, where it is known.
+    values: Vec<Option<Evaluation>>,
+    /// Snapshots to evaluate on the coarse lattice.
+    pending: Vec<usize>,
+    /// Snapshots that the coarse lattice left in doubt, to evaluate on the fine one.
     doubtful: Vec<usize>,
-    /// What the model is worth if it does as well as it can at the moments not known yet; its value once all are known.
-    at_best: Evaluation,
+    /// The mean of known values and of the best possible one for the others; the model's value once all are known.
+    bound: Evaluation,
 }
 
-impl<'m> Case<'m> {
-    /// Looks only whether targets are inside: no table is needed for a moment at which none is.
+impl<'m> PartialEvaluation<'m> {
+    /// Snapshots at which every target is outside the pattern are decided at once, without a table.
     fn new(model: &'m Model, evaluator: &Evaluator<'_>) -> Self {
         let is_lost = |snapshot: &Snapshot| snapshot.target_inputs.iter().all(|&[x1, x2]| model.error(x1, x2) < 0.0);
         let lost = |snapshot| is_lost(snapshot).then_some(Evaluation::NO_PATTERN);
-        let moments: Vec<_> = evaluator.world.snapshots().iter().map(lost).collect();
-        let ahead = (0..moments.len()).filter(|&place| moments[place].is_none()).collect();
-        let mut case =
-            Case { model, table: None, moments, ahead, doubtful: Vec::new(), at_best: Evaluation::NO_PATTERN };
-        case.sum_up(evaluator.world);
-        case
+        let values: Vec<_> = evaluator.world.snapshots().iter().map(lost).collect();
+        let pending = (0..values.len()).filter(|&place| values[place].is_none()).collect();
+        let bound = Evaluation::NO_PATTERN;
+        let mut evaluation = PartialEvaluation { model, table: None, values, pending, doubtful: Vec::new(), bound };
+        evaluation.update_bound(evaluator.world);
+        evaluation
     }
 
-    fn is_closed(&self) -> bool {
-        self.ahead.is_empty() && self.doubtful.is_empty()
+    fn is_complete(&self) -> bool {
+        self.pending.is_empty() && self.doubtful.is_empty()
     }
 
-    /// Looks at one more moment.
-    fn look_on(&mut self, evaluator: &mut Evaluator<'_>) {
+    /// Evaluates one more snapshot, the most difficult first, or finds it doubtful.
+    fn advance(&mut self, evaluator: &mut Evaluator<'_>) {
         let world = evaluator.world;
         let table = self.table.get_or_insert_with(|| error_table_of(world, self.model)).as_ref();
         let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], table };
-        let hardness = |&ahead: &usize| evaluator.hardness[self.ahead[ahead]];
-        let hardest = (0..self.ahead.len()).max_by(|a, b| hardness(a).total_cmp(&hardness(b)));
+        let difficulty = |&pending: &usize| evaluator.difficulty[self.pending[pending]];
+        let hardest = (0..self.pending.len()).max_by(|a, b| difficulty(a).total_cmp(&difficulty(b)));
         let (place, contours) = if let Some(hardest) = hardest {
-            let place = self.ahead.swap_remove(hardest);
-            let Some(contours) = evaluator.tracer.trace(view(place), evaluator.hardness[place] > LOST_AS_A_RULE) else {
+            let place = self.pending.swap_remove(hardest);
+            let Some(contours) = evaluator.tracer.trace(view(place), evaluator.difficulty[place] > USUALLY_LOST) else {
                 return self.doubtful.push(place);
             };
             (place, contours)
@@ -144,21 +155,21 @@ impl<'m> Case<'m> {
         } else {
             return;
         };
-        let moment = evaluate_snapshot(world, &world.snapshots()[place], &contours);
-        evaluator.learn(place, moment);
-        self.moments[place] = Some(moment);
-        self.sum_up(world);
+        let value = evaluate_snapshot(world, &world.snapshots()[place], &contours);
+        evaluator.learn(place, value);
+        self.values[place] = Some(value);
+        self.update_bound(world);
     }
 
-    /// Sums are rounded, but never fall when a term rises: so no model is worth more than at best.
-    fn sum_up(&mut self, world: &World) {
-        let least = Evaluation { f2: world.terms.least, violation: 0.0 };
+    /// A rounded sum never falls when one of its terms rises, so the bound holds for rounded values too.
+    fn update_bound(&mut self, world: &World) {
+        let best_possible = Evaluation { f2: world.terms.least, violation: 0.0 };
         let mut sum = Evaluation { f2: 0.0, violation: 0.0 };
-        for moment in &self.moments {
-            let moment = moment.unwrap_or(least);
-            sum = Evaluation { f2: sum.f2 + moment.f2, violation: sum.violation + moment.violation };
+        for value in &self.values {
+            let value = value.unwrap_or(best_possible);
+            sum = Evaluation { f2: sum.f2 + value.f2, violation: sum.violation + value.violation };
         }
-        self.at_best = sum.over(self.moments.len() as f64);
+        self.bound = sum.over(self.values.len() as f64);
     }
 }
 
@@ -174,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_get_their_values_and_the_others_no_better_than_theirs() {
+    fn winners_have_exact_values_and_the_others_bounds() {
         for name in ["channel", "compound-channel", "channel-two-targets"] {
             let world = world(name);
             let mut evaluator = Evaluator::new(&world);
@@ -208,23 +219,23 @@ mod tests {
     }
 
     #[test]
-    fn no_model_is_worth_more_than_at_best() {
+    fn no_model_is_better_than_its_bound() {
         let world = world("compound-channel");
         let mut evaluator = Evaluator::new(&world);
         for published in &PUBLISHED {
             let model = Model::new(&published.network().unwrap(), 0.5).unwrap();
             let value = evaluator.evaluate(&model);
-            let mut case = Case::new(&model, &evaluator);
-            while !case.is_closed() {
-                let before = case.at_best;
-                case.look_on(&mut evaluator);
+            let mut partial = PartialEvaluation::new(&model, &evaluator);
+            while !partial.is_complete() {
+                let before = partial.bound;
+                partial.advance(&mut evaluator);
                 assert!(
-                    before.is_as_good_as(&case.at_best) && case.at_best.is_as_good_as(&value),
+                    before.is_as_good_as(&partial.bound) && partial.bound.is_as_good_as(&value),
                     "{}",
                     published.name
                 );
             }
-            assert_eq!(case.at_best, value, "{}", published.name);
+            assert_eq!(partial.bound, value, "{}", published.name);
         }
     }
 }

@@ -7,23 +7,24 @@ use std::sync::OnceLock;
 /// Spacing of the fine lattice, metres.
 const FINE_STEP: f64 = LATTICE_STEP / 4.0;
 
-/// The fine lattice and what was asked for so far, by whichever thread: every thread would find the same.
+/// The fine lattice and the inputs computed on it so far. Threads share it: whoever computes a value, it is the same.
 #[derive(Debug)]
 pub(super) struct FineLattice {
     pub(super) lattice: Lattice,
     pub(super) runs: Vec<OnceLock<Box<Run>>>,
 }
 
-/// At so many moments x1 is kept, which takes 5 KB a run; for more it would not pay.
-pub(super) const MOST_KEPT_MOMENTS: usize = 64;
+/// x1 is kept for this many snapshots, which takes 5 KB a run of eight nodes; more would cost more memory than they save
+/// time.
+pub(super) const MOST_KEPT_SNAPSHOTS: usize = 64;
 
-/// What no model changes at eight nodes.
+/// What is the same for every model at eight nodes.
 #[derive(Debug)]
 pub(super) struct Run {
     pub(super) clearance: [f64; WIDTH],
     pub(super) sites: [Site; WIDTH],
     pub(super) x2: Lanes,
-    /// At each of the first [`MOST_KEPT_MOMENTS`].
+    /// At each of the first [`MOST_KEPT_SNAPSHOTS`].
     pub(super) x1: Vec<OnceLock<Lanes>>,
 }
 

@@ -13,12 +13,12 @@ use std::cmp::Ordering;
 pub const CANDIDATES_PER_RING: usize = 48;
 /// Candidate points nearer to an obstacle than this (metres) violate the constraint.
 pub const SMALLEST_CLEARANCE: f64 = 0.05;
-/// f2 of a snapshot without any ring: every distance out of range and every obstacle too close.
+/// f2 of a snapshot without any ring: the worst its two terms can add up to.
 pub const WORST_F2: f64 = 2.0;
-/// Violation of a model without a pattern: at every snapshot no target enclosed.
+/// Violation of a model without a pattern: no target is enclosed at any snapshot.
 const NO_PATTERN_VIOLATION: f64 = 1.0;
 
-/// What a model is worth in a scenario.
+/// What the evaluation of a model in a scenario finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
     /// The paper's f2, averaged over snapshots; in [0, 2], less is better.
@@ -29,7 +29,7 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// The value of something that makes no pattern at all.
+    /// The evaluation of a model without a pattern.
     pub const NO_PATTERN: Evaluation = Evaluation { f2: WORST_F2, violation: NO_PATTERN_VIOLATION };
 
     pub(super) fn over(self, count: f64) -> Evaluation {
@@ -42,7 +42,7 @@ impl Evaluation {
         !scores(other).dominates(&scores(self))
     }
 
-    /// From the best to the worst, by the same rule.
+    /// The order of the same rule, the better one first.
     pub fn order(&self, other: &Evaluation) -> Ordering {
         self.violation.total_cmp(&other.violation).then(self.f2.total_cmp(&other.f2))
     }
@@ -53,7 +53,7 @@ impl Evaluation {
     }
 }
 
-/// What a pattern is worth at a moment.
+/// f2 and violation of a pattern at one snapshot.
 pub(super) fn evaluate_snapshot(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
     let lost = lost / snapshot.targets.len() as f64;

@@ -1,6 +1,6 @@
 //! A lattice with what models read at its nodes: kept for the coarse one, computed when asked for on the fine one.
 
-use super::fine_lattice::{MOST_KEPT_MOMENTS, Run};
+use super::fine_lattice::{MOST_KEPT_SNAPSHOTS, Run};
 use super::lanes::{Lanes, WIDTH};
 use super::lattice::{Edge, Lattice, NodeIndex, Site, is_crease};
 use super::world::{Snapshot, World};
@@ -89,7 +89,7 @@ impl Computed<'_> {
                 clearance,
                 sites: std::array::from_fn(site),
                 x2: self.0.x2_at_all(Lanes(clearance)),
-                x1: vec![OnceLock::new(); self.0.snapshots().len().min(MOST_KEPT_MOMENTS)],
+                x1: vec![OnceLock::new(); self.0.snapshots().len().min(MOST_KEPT_SNAPSHOTS)],
             })
         })
     }

@@ -1,4 +1,4 @@
-//! From a model and a moment to the pattern (model page, section 3).
+//! From a model and a snapshot to the pattern (model page, section 3).
 
 use super::contour::{Component, Follower, View};
 use super::error_table::ErrorTable;
@@ -8,16 +8,16 @@ use super::model::Model;
 use super::world::{Snapshot, World};
 use grn_core::geometry::Point;
 
-/// A component's topology is in doubt when it changes within this pattern error: a cell of the lattice can hide a neck
-/// or a gap that shallow.
+/// Topology is in doubt if raising or lowering the level by this pattern error changes it: a necking or a gap that shallow
+/// can hide within one cell of the coarse lattice.
 const DOUBT: f64 = 0.02;
-/// So many nodes are looked at for a leak that is expected, before the pattern is taken to be closed: enough to get to a
-/// wall on either lattice.
+/// Where a leak is expected, this many nodes are searched for it before the component is flooded as if it were closed:
+/// enough to reach a wall on either lattice.
 const LOOKED_AT_FOR_LEAKS: usize = 200;
-/// How far off a table may be for models to be traced by it.
+/// The largest error of a table that models may be traced by.
 const CHART_TOLERANCE: f64 = DOUBT / 4.0;
 
-/// The pattern of one model at one moment.
+/// The pattern of one model at one snapshot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contours {
     /// Closed contours that bound an inside component holding a target; metres, first point not repeated.
@@ -56,15 +56,15 @@ impl<'w> Tracer<'w> {
         })
     }
 
-    /// The pattern at a moment, if the lattice leaves no doubt about it. If `expects_leak`, it is quicker for one that
-    /// leaks and slower for others.
+    /// The pattern at a snapshot, unless the coarse lattice leaves its topology in doubt. `expects_leak` changes only the
+    /// speed: faster for patterns that leak, slower for others.
     pub(super) fn trace(&mut self, view: View<'_>, expects_leak: bool) -> Option<Contours> {
         let mut attempt = Attempt { outline_leaks: self.outline_leaks, expects_leak, ..Attempt::default() };
         let doubtful = attempt.trace(&mut self.coarse, view);
         (!doubtful).then(|| attempt.contours())
     }
 
-    /// The pattern at a moment, as the fine lattice shows it.
+    /// The pattern at a snapshot on the fine lattice, which is believed.
     pub(super) fn trace_finely(&mut self, view: View<'_>) -> Contours {
         let fine = self.fine.get_or_insert_with(|| Follower::new(Computed(self.world)));
         let outline_leaks = self.outline_leaks;
@@ -74,7 +74,7 @@ impl<'w> Tracer<'w> {
     }
 }
 
-/// What models are traced by in a world, unless a table cannot be accurate enough.
+/// The table to trace a model by in a world; `None` if none is accurate enough.
 pub(super) fn error_table_of(world: &World, model: &Model) -> Option<ErrorTable> {
     ErrorTable::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
 }
@@ -93,7 +93,7 @@ struct Attempt {
     outline_leaks: bool,
     /// Whether to look for leaks before anything else.
     expects_leak: bool,
-    /// Whether to take what the lattice shows without doubting it.
+    /// Whether this lattice is the fine one, which is believed.
     is_final: bool,
     rings: Vec<Vec<Point<f64>>>,
     leaks: Vec<Vec<Point<f64>>>,
@@ -103,8 +103,8 @@ struct Attempt {
 impl Attempt {
     /// Traces the pattern. Returns whether some target's fate differs within the doubtful range of thresholds.
     ///
-    /// Components grow as the threshold falls. One that is closed and holds a single target, and is still closed at the
-    /// low end, therefore is so throughout; only the others have to be looked at from the high end too.
+    /// Components only grow as the threshold falls. So a component that holds one target and is closed at the lowest
+    /// threshold is closed at every threshold. All others are checked at the highest threshold as well.
     fn trace<M: Medium>(&mut self, follower: &mut Follower<M>, view: View<'_>) -> bool {
         follower.begin();
         let mut shared = false;

@@ -1,4 +1,4 @@
-//! A scenario prepared for judging many models: morphogens on a lattice, which no model changes.
+//! A scenario prepared for evaluating many models: its morphogens on a lattice, which are the same for every model.
 
 use super::fine_lattice::FineLattice;
 use super::lanes::{Lanes, WIDTH, concentration};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Stands for "no wall near": every kernel is 0 there.
 const FAR: f64 = 1e3;
 
-/// One moment of a scenario.
+/// A scenario at one instant.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// Its place among the world's snapshots.
@@ -45,14 +45,14 @@ pub struct World {
 }
 
 impl World {
-    /// Prepares a scenario: a few hundredths of a second.
+    /// Prepares a scenario; takes a few hundredths of a second.
     pub fn new(scenario: Scenario) -> World {
-        let moments = scenario.snapshot_targets();
-        World::at(scenario, moments)
+        let snapshots = scenario.snapshot_targets();
+        World::at(scenario, snapshots)
     }
 
-    /// The same for other moments than the scenario's snapshots: where the targets are at each, metres.
-    pub fn at(scenario: Scenario, moments: Vec<Vec<Point<f64>>>) -> World {
+    /// The same with other snapshots than the scenario's: where the targets are at each, metres.
+    pub fn at(scenario: Scenario, snapshots: Vec<Vec<Point<f64>>>) -> World {
         let morphogen = scenario.morphogen();
         let lattice = Lattice::over(scenario.region(), LATTICE_STEP);
         let mut world = World {
@@ -72,7 +72,7 @@ impl World {
         let site = |node| Site::of(&world.lattice, node, world.clearance[node]);
         world.sites = world.lattice.nodes().map(site).collect();
         let x2: Vec<f64> = world.clearance.iter().map(|&clearance| world.x2_at(clearance)).collect();
-        let snapshots = moments.into_iter().enumerate();
+        let snapshots = snapshots.into_iter().enumerate();
         world.snapshots = snapshots.map(|(place, targets)| world.snapshot(place, targets, &x2)).collect();
         world
     }
@@ -108,7 +108,7 @@ impl World {
         &self.field
     }
 
-    /// The moments models are evaluated at.
+    /// The instants models are evaluated at.
     pub fn snapshots(&self) -> &[Snapshot] {
         &self.snapshots
     }

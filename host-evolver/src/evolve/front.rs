@@ -1,6 +1,7 @@
 //! What a run leaves: its non-dominated front.
 
 use crate::model::describe;
+use crate::model::notation::Digits;
 use grn_core::network::Network;
 use grn_optimisers::hypervolume::hypervolume;
 use grn_optimisers::knee::Knee;
@@ -23,9 +24,9 @@ pub struct FrontMember {
 }
 
 impl FrontMember {
-    /// Prefix notation with all digits of θ.
-    pub fn expression(&self) -> String {
-        describe::expression(&self.network)
+    /// The model in the one [notation](crate::model::notation).
+    pub fn expression(&self, digits: Digits) -> String {
+        describe::expression(&self.network, digits)
     }
 
     /// Whether it encloses every target everywhere without coming too close to a wall.

@@ -2,6 +2,7 @@
 
 pub mod deploy;
 pub mod describe;
+pub mod notation;
 pub mod published;
 pub mod tree;
 pub mod variation;

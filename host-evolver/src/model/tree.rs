@@ -1,5 +1,6 @@
 //! Syntax trees of network motifs: what genetic programming varies.
 
+use super::notation::{self, Digits, Part};
 use grn_core::motif::Motif;
 use grn_core::network::{DEFAULT_GENES, Gene, Network, NetworkError, Source};
 use serde::{Deserialize, Serialize};
@@ -139,6 +140,15 @@ impl Tree {
         Tree { nodes: nodes.collect() }
     }
 
+    /// The tree in the one [notation].
+    pub fn expression(&self, digits: Digits) -> String {
+        let part = |node: &Node| match *node {
+            Node::Terminal(input) => Part::Input(input),
+            Node::Motif(motif, theta) => Part::Motif(motif, theta, node.children()),
+        };
+        notation::expression(self.nodes.iter().map(part), digits)
+    }
+
     /// The network that computes the tree, one gene per motif node, sigmoid steepness k. A gene reads its operands in
     /// the order of the tree, and the root is the last gene. θ is rounded to `f32`, as robots store it.
     ///
@@ -176,31 +186,10 @@ fn subtree_end(nodes: &[Node], start: usize) -> usize {
     end
 }
 
-/// Prefix notation with θ: `(XNOR[0.9256] (NAND[0.8393] x1 x1) x2)`.
+/// The tree in the one [notation], with all digits of θ.
 impl fmt::Display for Tree {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut open: Vec<usize> = Vec::new();
-        for (index, node) in self.nodes.iter().enumerate() {
-            if index > 0 {
-                f.write_str(" ")?;
-            }
-            match node {
-                Node::Terminal(Terminal::X1) => f.write_str("x1")?,
-                Node::Terminal(Terminal::X2) => f.write_str("x2")?,
-                Node::Motif(motif, theta) => write!(f, "({}[{theta}]", motif.name())?,
-            }
-            open.push(node.children());
-            while open.last() == Some(&0) {
-                open.pop();
-                if let Some(missing) = open.last_mut() {
-                    *missing -= 1;
-                    if *missing == 0 {
-                        f.write_str(")")?;
-                    }
-                }
-            }
-        }
-        Ok(())
+        f.write_str(&self.expression(Digits::All))
     }
 }
 
@@ -252,14 +241,14 @@ impl std::str::FromStr for Tree {
                     }
                     _ => return Err(fault("a bracket closes nothing".into())),
                 },
-                "x1" | "x2" => {
-                    nodes.push(Node::Terminal(if word == "x1" { Terminal::X1 } else { Terminal::X2 }));
+                _ if let Some(input) = notation::input_of(word) => {
+                    nodes.push(Node::Terminal(input));
                     if let Some(Some((_, count))) = open.last_mut() {
                         *count += 1;
                     }
                 }
                 _ => {
-                    let node = parse_motif(word).ok_or_else(|| fault(format!("{word:?} is no motif")))?;
+                    let node = notation::parse_motif(word).ok_or_else(|| fault(format!("{word:?} is no motif")))?;
                     let slot = open.last_mut().ok_or_else(|| fault(format!("{word:?} stands outside brackets")))?;
                     if slot.is_some() {
                         return Err(fault(format!("{word:?} stands where an operand should")));
@@ -274,13 +263,6 @@ impl std::str::FromStr for Tree {
             && nodes.iter().map(|node| node.children()).sum::<usize>() + 1 == nodes.len();
         if one_tree { Ok(Tree { nodes }) } else { Err(fault("it is not exactly one closed expression".into())) }
     }
-}
-
-fn parse_motif(word: &str) -> Option<(Motif, f64)> {
-    let (name, theta) = word.strip_suffix(']')?.split_once('[')?;
-    let motif = Motif::ALL.into_iter().find(|motif| motif.name() == name)?;
-    let theta = theta.parse().ok().filter(|theta: &f64| theta.is_finite())?;
-    Some((motif, theta))
 }
 
 #[cfg(test)]

@@ -3,11 +3,6 @@
 /// A figure's data cannot be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FigureError {
-    /// There is nothing to draw.
-    Empty {
-        /// Which input is empty.
-        what: &'static str,
-    },
     /// A number is NaN or infinite.
     NotFinite {
         /// Which input holds it.
@@ -33,15 +28,6 @@ pub enum FigureError {
         /// The length it should have.
         expected: usize,
     },
-    /// There is more than one figure can show.
-    TooMany {
-        /// Of what.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there may be.
-        limit: usize,
-    },
     /// The chart library refused; the text is its own.
     Chart(String),
 }
@@ -49,14 +35,10 @@ pub enum FigureError {
 impl std::fmt::Display for FigureError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Empty { what } => write!(f, "nothing to draw: no {what}"),
             Self::NotFinite { what, index } => write!(f, "{what} {index} is not a finite number"),
             Self::OutOfRange { what, index, expected } => write!(f, "{what} {index} must be {expected}"),
             Self::Length { what, found, expected } => {
                 write!(f, "{what}: {found} values where {expected} are needed")
-            }
-            Self::TooMany { what, found, limit } => {
-                write!(f, "{found} {what} do not fit in one figure, which shows up to {limit}")
             }
             Self::Chart(reason) => write!(f, "the chart could not be drawn: {reason}"),
         }

@@ -2,6 +2,7 @@
 
 pub(crate) mod error;
 pub(crate) mod format;
+pub(crate) mod note;
 pub(crate) mod paint;
 pub mod style;
 pub(crate) mod svg;

@@ -26,11 +26,13 @@ pub const GREY: &str = "#767676";
 /// Grid lines and light marks.
 pub const LIGHT: &str = "#DADADA";
 /// Walls.
-pub const WALL: &str = "#D2D2D2";
+pub const WALL: &str = "#ABABAB";
+/// Outline of walls.
+pub const WALL_EDGE: &str = "#4D4D4D";
+/// Frame of a map.
+pub const EDGE: &str = "#C9C9C9";
 /// Okabe-Ito blue: the pattern, target input x1.
 pub const BLUE: &str = "#0072B2";
-/// Okabe-Ito sky blue.
-pub const SKY: &str = "#56B4E9";
 /// Okabe-Ito orange: obstacle input x2.
 pub const ORANGE: &str = "#E69F00";
 /// Okabe-Ito bluish green: enclosed targets.
@@ -46,7 +48,7 @@ pub const ORANGE_TINT: &str = "#F8DFA6";
 /// Tint of grey, for boxes.
 pub const BOX_TINT: &str = "#F5F5F5";
 
-/// Colours and dash patterns (on and off, points) of up to six series, distinct in grey by the dashes.
+/// Colours and dash patterns (on and off, points) of series, distinct in grey by the dashes; see [`series`].
 pub const SERIES: [(&str, &[f64]); 6] = [
     (BLUE, &[]),
     (VERMILLION, &[4.0, 2.0]),
@@ -55,6 +57,12 @@ pub const SERIES: [(&str, &[f64]); 6] = [
     (ORANGE, &[2.5, 1.5]),
     (INK, &[6.0, 1.5, 1.5, 1.5]),
 ];
+
+/// The look of a series by its place: after the sixth the colours come again with other dashes, after the 36th all does.
+pub fn series(place: usize) -> (&'static str, &'static [f64]) {
+    let count = SERIES.len();
+    (SERIES[place % count].0, SERIES[(place + place / count) % count].1)
+}
 
 /// A colour for a time, `0` the earliest and `1` the latest: from dark violet to light green, darker is
 /// always earlier, also in grey. The ramp is viridis without its palest end.

@@ -15,6 +15,9 @@ const WIDTHS: [u16; 95] = [
 /// Size of a subscript relative to the text it belongs to.
 pub(crate) const SUB: f64 = 0.74;
 
+/// How much wider bold text is.
+pub(crate) const BOLD: f64 = 1.12;
+
 /// How a run of text is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -79,6 +82,8 @@ fn char_width(c: char) -> f64 {
             '·' => 318,
             '°' | '–' => 500,
             '×' | '≥' | '≤' => 838,
+            // Chinese, Japanese and Korean letters, wide forms and pictures fill a square.
+            '…' | '\u{1100}'..='\u{11FF}' | '\u{2E80}'.. => 1000,
             _ => 634,
         },
     };
@@ -91,10 +96,10 @@ pub(crate) fn run_width(run: &Run, size: f64) -> f64 {
     run.text.chars().map(char_width).sum::<f64>() * size
 }
 
-/// Width of text at a font size, as [`runs`] sets it; bold is some 12 % wider.
+/// Width of text at a font size, as [`runs`] sets it.
 pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
     let natural: f64 = runs(text).iter().map(|run| run_width(run, size)).sum();
-    if bold { natural * 1.12 } else { natural }
+    if bold { natural * BOLD } else { natural }
 }
 
 /// Breaks words or an expression after commas and spaces into lines no wider than `limit` where these allow it: no more
@@ -112,10 +117,50 @@ pub(crate) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     }
 }
 
+/// [`wrap`] into at most `most` lines, none wider than `limit`: words that are too wide are broken anywhere, and what is
+/// left over is cut off with an ellipsis.
+pub(crate) fn lines(text: &str, size: f64, limit: f64, most: usize) -> Vec<String> {
+    let too_wide = |line: &str| width(line, size, false) > limit;
+    let mut lines = wrap(text, size, limit);
+    if lines.iter().any(|line| too_wide(line)) {
+        lines = broken(text, size, limit);
+    }
+    if lines.len() > most.max(1) {
+        lines.truncate(most.max(1));
+        if let Some(last) = lines.last_mut() {
+            while !last.is_empty() && too_wide(&format!("{last}…")) {
+                last.pop();
+            }
+            last.push('…');
+        }
+    }
+    lines
+}
+
+/// Lines that each take as many words as they can, and of a word that is too wide as many letters.
+fn broken(text: &str, size: f64, limit: f64) -> Vec<String> {
+    let mut pieces = Vec::new();
+    for word in text.split_inclusive([',', ' ']) {
+        let mut piece = String::new();
+        for letter in word.chars() {
+            if !piece.is_empty() && width(format!("{piece}{letter}").trim_end(), size, false) > limit {
+                pieces.push(std::mem::take(&mut piece));
+            }
+            piece.push(letter);
+        }
+        pieces.push(piece);
+    }
+    filled_with(pieces.iter().map(String::as_str), size, limit)
+}
+
 /// Lines that each take as much as they can.
 fn filled(text: &str, size: f64, limit: f64) -> Vec<String> {
+    filled_with(text.split_inclusive([',', ' ']), size, limit)
+}
+
+fn filled_with<'a>(parts: impl Iterator<Item = &'a str>, size: f64, limit: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
-    for part in text.split_inclusive([',', ' ']) {
+    for part in parts {
         let Some(line) = lines.last_mut() else {
             continue;
         };
@@ -160,6 +205,20 @@ mod tests {
         assert_eq!(wrap("printed NAND-XNOR (1 B)", 8.0, limit), ["printed", "NAND-XNOR (1 B)"]);
         assert_eq!(wrap("one two", 8.0, 1000.0), ["one two"]);
         assert!(wrap("", 8.0, 10.0).is_empty());
+    }
+
+    #[test]
+    fn a_long_name_is_broken_and_then_cut() {
+        let name = "a".repeat(60);
+        let all = lines(&name, 8.0, 60.0, 99);
+        assert!(all.len() > 3 && all.concat() == name);
+        assert!(all.iter().all(|line| width(line, 8.0, false) <= 60.0));
+        let cut = lines(&name, 8.0, 60.0, 2);
+        assert_eq!(cut.len(), 2);
+        assert!(cut[1].ends_with('…') && width(&cut[1], 8.0, false) <= 60.0);
+        assert_eq!(lines("one two", 8.0, 1000.0, 2), ["one two"]);
+        assert!(lines("", 8.0, 10.0, 2).is_empty());
+        assert!(!lines("wide", 8.0, 0.1, 3).is_empty());
     }
 
     #[test]

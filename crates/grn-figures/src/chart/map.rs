@@ -1,9 +1,9 @@
 //! The world on paper: equal scales, y upwards, and a bar that says how long a metre is.
 
-use crate::canvas::error::FigureError;
+use crate::canvas::error::{FigureError, finite};
 use crate::canvas::format::num;
 use crate::canvas::paint::{Anchor, Font, Paint, Rect};
-use crate::canvas::style::{GREY, INK, SMALL, WALL};
+use crate::canvas::style::{EDGE, INK, SMALL, WALL, WALL_EDGE};
 use crate::canvas::svg::{Svg, poly};
 use crate::canvas::text::width;
 
@@ -21,19 +21,35 @@ impl Window {
         if self.min.iter().chain(&self.max).any(|v| !v.is_finite()) {
             return Err(FigureError::NotFinite { what, index });
         }
-        if self.width() < 1e-3 || self.height() < 1e-3 {
-            return Err(FigureError::OutOfRange { what, index, expected: "at least 1 mm wide and high" });
+        if self.max[0] < self.min[0] || self.max[1] < self.min[1] {
+            return Err(FigureError::OutOfRange {
+                what,
+                index,
+                expected: "from the smaller to the larger coordinates",
+            });
         }
-        Ok(())
+        finite(what, self.min.into_iter().chain(self.max)).map_err(|e| e.within(what, index))
     }
 
+    /// At least 1 mm, so that a window around a single point can be shown.
     pub(crate) fn width(&self) -> f64 {
-        self.max[0] - self.min[0]
+        (self.max[0] - self.min[0]).max(1e-3)
     }
 
+    /// At least 1 mm.
     pub(crate) fn height(&self) -> f64 {
-        self.max[1] - self.min[1]
+        (self.max[1] - self.min[1]).max(1e-3)
     }
+}
+
+/// How walls look: solid and dark.
+pub(crate) fn wall_look() -> Paint {
+    Paint::stroke(WALL_EDGE, 0.6).filled(WALL)
+}
+
+/// How the frame of a map looks: so light that nobody takes it for a wall.
+pub(crate) fn frame_look() -> Paint {
+    Paint::stroke(EDGE, 0.5)
 }
 
 /// A window of the world in a rectangle on paper.
@@ -70,7 +86,7 @@ impl View {
         for wall in walls {
             let d = self.path(std::slice::from_ref(wall), true);
             if !d.is_empty() {
-                svg.path(&d, &Paint::stroke(GREY, 0.5).filled(WALL));
+                svg.path(&d, &wall_look());
             }
         }
     }
@@ -121,9 +137,11 @@ mod tests {
     }
 
     #[test]
-    fn empty_windows_are_refused() {
+    fn windows_that_are_none_are_refused() {
         let flat = Window { min: [0.0, 1.0], max: [3.0, 1.0] };
-        assert!(matches!(flat.check("window", 4), Err(FigureError::OutOfRange { index: 4, .. })));
+        assert_eq!((flat.check("window", 4), flat.height()), (Ok(()), 1e-3));
+        let turned = Window { min: [0.0, 1.0], max: [3.0, 0.0] };
+        assert!(matches!(turned.check("window", 4), Err(FigureError::OutOfRange { index: 4, .. })));
         let broken = Window { min: [0.0, f64::NAN], max: [3.0, 1.0] };
         assert_eq!(broken.check("window", 0), Err(FigureError::NotFinite { what: "window", index: 0 }));
     }

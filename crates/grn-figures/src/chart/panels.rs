@@ -1,9 +1,9 @@
-//! Panels side by side, and the axis of what they measure.
+//! Panels side by side, over as many pages as it takes, and the axis of what they measure.
 
 use crate::canvas::paint::{Anchor, Font, Rect};
 use crate::canvas::style::{COLUMN, LABEL, PAGE, PAGE_HEIGHT, SMALL};
 use crate::canvas::svg::Svg;
-use crate::canvas::text::width;
+use crate::canvas::text::{BOLD, lines, width};
 use crate::chart::axes::Axis;
 
 /// Room left of all panels for the words of the y axis.
@@ -11,6 +11,10 @@ const WORDS: f64 = 11.0;
 /// Room left of each panel for its numbers.
 const NUMBERS: f64 = 34.0;
 const GAP: f64 = 6.0;
+/// Height of a line of a title.
+const TITLE: f64 = 10.0;
+/// Most lines of a title; a longer one is cut.
+const TITLE_LINES: usize = 3;
 
 /// Panels in rows and columns.
 pub(crate) struct Grid {
@@ -39,9 +43,18 @@ impl Grid {
         self.cell() - NUMBERS - GAP
     }
 
-    /// How many panels fit on a page in rows so high.
-    pub fn limit(&self, row: f64) -> usize {
-        self.columns * (PAGE_HEIGHT / row) as usize
+    /// How many panels fit on a page in rows so high below a head: at least one row of them.
+    pub fn limit(&self, head: f64, row: f64) -> usize {
+        self.columns * (((PAGE_HEIGHT - head) / row) as usize).max(1)
+    }
+
+    fn title(&self, title: &str) -> Vec<String> {
+        lines(title, LABEL * BOLD, self.cell() - 2.0 * GAP, TITLE_LINES)
+    }
+
+    /// Room that the highest of some titles takes.
+    pub fn title_height<'a>(&self, titles: impl Iterator<Item = &'a str>) -> f64 {
+        TITLE * titles.map(|title| self.title(title).len()).max().unwrap_or(0) as f64
     }
 
     /// The row of a panel, counted from 0.
@@ -55,10 +68,17 @@ impl Grid {
         Rect::new(left, top, self.plot(), height)
     }
 
-    /// Writes a panel's title with its baseline at `base`, and the words of the y axis beside the first of a row.
+    /// Writes a panel's title from `top` downwards, and the words of the y axis beside the first panel of a row.
     pub fn words(&self, svg: &mut Svg, panel: usize, rect: &Rect, title: (&str, f64), y_label: &str) {
         let middle = rect.x + rect.w / 2.0;
-        svg.text(title.0, (middle, title.1), &Font::new(LABEL, Anchor::Middle).bold());
+        // Above the middle of the axes, unless it is so long that it would reach into the next panel.
+        let left = WORDS + (panel % self.columns) as f64 * self.cell();
+        for (i, line) in self.title(title.0).iter().enumerate() {
+            let half = width(line, LABEL, true) / 2.0;
+            let x = middle.min(left + self.cell() - half).max(left + half);
+            let base = title.1 + TITLE * (i as f64 + 0.85);
+            svg.text(line, (x, base), &Font::new(LABEL, Anchor::Middle).bold());
+        }
         if panel.is_multiple_of(self.columns) {
             let at = (WORDS - 2.0, rect.y + rect.h / 2.0);
             svg.turned_text(y_label, at, -90.0, &Font::new(LABEL, Anchor::Middle));

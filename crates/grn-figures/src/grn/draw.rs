@@ -79,7 +79,7 @@ pub(crate) fn name_font() -> Font {
 }
 
 pub(crate) fn theta(gene: &Gene) -> String {
-    format!("θ = {:.3}", gene.theta)
+    format!("θ = {:.4}", gene.theta)
 }
 
 pub(crate) fn draw_gene(svg: &mut Svg, gene: &Gene, rect: &Rect, last: bool) {

@@ -1,6 +1,7 @@
 //! The network a model stands for: genes, what they read, and what promotes or represses them.
 
 use crate::canvas::error::{FigureError, finite};
+use crate::canvas::note::nothing_to_draw;
 use crate::canvas::paint::{Paint, Rect};
 use crate::canvas::style::{COLUMN, INK, SMALL, VERMILLION};
 use crate::canvas::svg::Svg;
@@ -14,12 +15,18 @@ use crate::tree;
 const GENES: usize = 64;
 
 /// Draws a network in layers from the inputs on the left to the pattern morphogen, which has a double
-/// frame, on the right. Arrowheads promote, bars repress.
+/// frame, on the right. Arrowheads promote, bars repress. Of more than 64 genes the figure says only how many they are.
 ///
 /// # Errors
-/// No genes, more than 64, a gene without inputs or reading one that is not earlier, a θ that is not finite.
+/// A gene without inputs or reading one that is not earlier, a θ that is not finite.
 pub fn grn(genes: &[Gene]) -> Result<String, FigureError> {
     check(genes)?;
+    if genes.is_empty() {
+        return Ok(nothing_to_draw("the network has no gene"));
+    }
+    if genes.len() > GENES {
+        return Ok(nothing_to_draw(&format!("{} genes are too many for a figure", genes.len())));
+    }
     let layers = layers(genes);
     let mut layout = Layout::default();
     let reads = |source| genes.iter().flat_map(|g| &g.inputs).any(|i| i.source == source);
@@ -98,12 +105,6 @@ pub fn grn(genes: &[Gene]) -> Result<String, FigureError> {
 }
 
 fn check(genes: &[Gene]) -> Result<(), FigureError> {
-    if genes.is_empty() {
-        return Err(FigureError::Empty { what: "genes" });
-    }
-    if genes.len() > GENES {
-        return Err(FigureError::TooMany { what: "genes", found: genes.len(), limit: GENES });
-    }
     finite("θ of gene", genes.iter().map(|g| g.theta))?;
     let late = |(i, gene): (usize, &Gene)| {
         let earlier = |input: &Input| !matches!(input.source, Source::Gene(j) if j >= i);
@@ -146,7 +147,7 @@ mod tests {
         distinct.dedup();
         assert_eq!(edges.len(), 4);
         assert_eq!(distinct.len(), 4);
-        assert!(document.says("G1") && document.says("θ = 0.839") && document.says("x2"));
+        assert!(document.says("G1") && document.says("θ = 0.8393") && document.says("x2"));
     }
 
     #[test]
@@ -157,8 +158,14 @@ mod tests {
     }
 
     #[test]
+    fn no_gene_and_too_many_are_said() {
+        assert!(read(&grn(&[]).unwrap()).texts.concat().starts_with("Nothing to draw"));
+        let many = vec![gene("G1", &[(Source::X1, true)]); 65];
+        assert!(read(&grn(&many).unwrap()).texts.concat().contains("65 genes"));
+    }
+
+    #[test]
     fn bad_networks_are_refused() {
-        assert_eq!(grn(&[]), Err(FigureError::Empty { what: "genes" }));
         let mut genes = pair();
         genes[0].theta = f64::INFINITY;
         assert_eq!(grn(&genes), Err(FigureError::NotFinite { what: "θ of gene", index: 0 }));

@@ -1,33 +1,33 @@
 //! What a figure of a front takes.
 
-use crate::canvas::paint::Mark;
+use crate::canvas::paint::{Mark, Paint};
+use crate::canvas::style::{INK, THIN, VERMILLION};
+use grn_optimisers::knee::Knee;
 
-/// By which measure a point is a knee.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KneeKind {
-    /// The angle between its neighbours (Branke et al. 2004, section 3.1).
-    Angle,
-    /// The expected marginal utility (Branke et al. 2004, section 3.2).
-    Utility,
-    /// Both.
-    Both,
+/// The words and the mark of a knee; none for a point that is no knee.
+pub(crate) fn knee_look(knee: Knee) -> Option<(&'static str, Mark)> {
+    match (knee.angle, knee.utility) {
+        (true, true) => Some(("knee (both)", Mark::Diamond)),
+        (true, false) => Some(("knee (angle)", Mark::Triangle)),
+        (false, true) => Some(("knee (utility)", Mark::Square)),
+        (false, false) => None,
+    }
 }
 
-impl KneeKind {
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Angle => "knee (angle)",
-            Self::Utility => "knee (utility)",
-            Self::Both => "knee (both)",
-        }
+/// How a model that is not on the front is marked.
+pub(crate) fn other_look(feasible: bool) -> (Mark, f64, Paint) {
+    if feasible {
+        (Mark::Circle, 1.7, Paint::fill("#C4C4C4"))
+    } else {
+        (Mark::Cross, 1.6, Paint::stroke("#B0B0B0", 0.7))
     }
+}
 
-    pub(crate) fn mark(self) -> Mark {
-        match self {
-            Self::Angle => Mark::Triangle,
-            Self::Utility => Mark::Square,
-            Self::Both => Mark::Diamond,
-        }
+/// How a model on the front is marked.
+pub(crate) fn front_look(knee: Knee) -> (Mark, f64, Paint) {
+    match knee_look(knee) {
+        Some((_, mark)) => (mark, 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
+        None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
     }
 }
 
@@ -40,10 +40,17 @@ pub struct ParetoPoint {
     pub f2: f64,
     /// Whether every target is enclosed and every obstacle cleared.
     pub feasible: bool,
-    /// Whether it is a knee of the front.
-    pub knee: Option<KneeKind>,
+    /// By which measures it is a knee of the front; a knee is drawn as one where it is feasible.
+    pub knee: Knee,
     /// Its expression, written beside a knee.
     pub label: String,
+}
+
+impl ParetoPoint {
+    /// Whether it is marked and labelled.
+    pub(crate) fn is_knee(&self) -> bool {
+        self.feasible && self.knee != Knee::default()
+    }
 }
 
 /// A horizontal line to compare with, such as the error of a perfect circle.

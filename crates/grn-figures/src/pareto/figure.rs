@@ -1,44 +1,45 @@
 //! The front: complexity against pattern error, with knees.
 
 use crate::canvas::error::{FigureError, finite, within};
+use crate::canvas::note::nothing_to_draw;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{COLUMN, DATA, GREY, INK, LABEL, SMALL, THIN, VERMILLION};
+use crate::canvas::style::{COLUMN, DATA, GREY, INK, LABEL, SMALL, THIN};
 use crate::canvas::svg::Svg;
-use crate::canvas::text::width;
+use crate::canvas::text::{BOLD, lines, width};
 use crate::chart::axes::{Chart, Line};
 use crate::chart::legend::{Key, legend};
 use crate::chart::place::Taken;
-use crate::pareto::data::{KneeKind, ParetoPoint, Reference};
+use crate::pareto::data::{ParetoPoint, Reference, front_look, knee_look, other_look};
 use crate::pareto::front::{Label, complexity, error_axis, front, staircase};
+use grn_optimisers::knee::Knee;
 
 /// What an f2 can be: the formula's sums of sigmoids stay below 3.
 const F2: (f64, f64) = (0.0, 1000.0);
 
 /// Draws the final population, one column wide: the non-dominated feasible solutions joined by their
 /// staircase, the others in light grey, knees marked and labelled with their expression. f2 is on a
-/// logarithmic scale where it spans more than a factor of ten.
+/// logarithmic scale where it spans more than a factor of ten. Where nothing is feasible the figure says so, and
+/// shows the infeasible solutions; an infeasible knee is drawn as an infeasible solution.
 ///
 /// # Errors
-/// No feasible point, an f2 that is not finite or not in 0 to 1000, no nodes, an infeasible knee.
+/// An f2 that is not finite or not in 0 to 1000, no nodes.
 pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>) -> Result<String, FigureError> {
     finite("f2 of point", points.iter().map(|p| p.f2))?;
     within("f2 of point", points.iter().map(|p| p.f2), F2, "from 0 to 1000")?;
-    let expected = "of at least one node, and feasible if it is a knee";
-    let bad = |p: &ParetoPoint| p.nodes == 0 || (p.knee.is_some() && !p.feasible);
-    if let Some(index) = points.iter().position(bad) {
-        return Err(FigureError::OutOfRange { what: "point", index, expected });
+    if let Some(index) = points.iter().position(|p| p.nodes == 0) {
+        return Err(FigureError::OutOfRange { what: "point", index, expected: "of at least one node" });
     }
     finite("f2 of reference", reference.map(|r| r.f2))?;
     within("f2 of reference", reference.map(|r| r.f2), F2, "from 0 to 1000")?;
-    let front = front(points);
-    if front.is_empty() {
-        return Err(FigureError::Empty { what: "feasible solutions" });
+    if points.is_empty() {
+        return Ok(nothing_to_draw("there is no model"));
     }
+    let front = front(points);
     let mut svg = Svg::default();
     let mut top = 6.0;
-    if !title.is_empty() {
-        svg.text(title, (COLUMN / 2.0, 11.0), &Font::new(LABEL, Anchor::Middle).bold());
-        top = 18.0;
+    for line in lines(title, LABEL * BOLD, COLUMN - 8.0, 3) {
+        svg.text(&line, (COLUMN / 2.0, top + 5.0), &Font::new(LABEL, Anchor::Middle).bold());
+        top += 11.0;
     }
     let entries = entries(points, &front);
     let y = error_axis(points, reference);
@@ -54,17 +55,17 @@ pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>
         x_numbers: true,
     };
     let stairs = staircase(points, &front, &chart);
-    let mut lines = vec![Line { points: stairs.clone(), colour: INK, width: DATA * 0.8, dash: &[] }];
+    let mut drawn = vec![Line { points: stairs.clone(), colour: INK, width: DATA * 0.8, dash: &[] }];
     if let Some(r) = reference {
         let at = chart.y.at(r.f2);
-        lines.push(Line {
+        drawn.push(Line {
             points: vec![(chart.x.lo, at), (chart.x.hi, at)],
             colour: GREY,
             width: THIN,
             dash: &[3.0, 2.0],
         });
     }
-    chart.draw(&mut svg, &lines)?;
+    chart.draw(&mut svg, &drawn)?;
     let mut taken = Taken::new(rect);
     for pair in stairs.windows(2) {
         taken.add_line(chart.on_paper(pair[0]), chart.on_paper(pair[1]), 8.0);
@@ -84,19 +85,35 @@ pub fn pareto(points: &[ParetoPoint], title: &str, reference: Option<&Reference>
     }
     for &i in &front {
         let p = &points[i];
-        svg.open(if p.knee.is_some() { "knee" } else { "front" }, &p.label);
+        svg.open(if p.is_knee() { "knee" } else { "front" }, &p.label);
         let (mark, r, paint) = front_look(p.knee);
         svg.mark(mark, place(p), r, &paint);
         svg.close();
     }
     // The most complex first: its label can go to the right, which leaves the rest room above.
-    for p in front.iter().rev().map(|&i| &points[i]).filter(|p| p.knee.is_some()) {
+    for p in front.iter().rev().map(|&i| &points[i]).filter(|p| p.is_knee()) {
         if let Some(label) = Label::fit(&p.label, place(p), &taken) {
             label.draw(&mut svg);
             label.take(&mut taken);
         }
     }
+    if front.is_empty() {
+        say_infeasible(&mut svg, &chart, &taken);
+    }
     Ok(svg.finish(COLUMN, rect.bottom() + 28.0))
+}
+
+/// Writes into the chart that no model is feasible, where that covers least.
+fn say_infeasible(svg: &mut Svg, chart: &Chart, taken: &Taken) {
+    let font = Font::new(LABEL, Anchor::Middle).bold();
+    let words = "no model is feasible";
+    let (w, h) = (font.width(words) + 8.0, LABEL + 5.0);
+    let x = chart.rect.x + (chart.rect.w - w) / 2.0;
+    let heights = (0..8).map(|i| chart.rect.y + 4.0 + (chart.rect.h - h - 8.0) * f64::from(i) / 7.0);
+    if let Some(rect) = taken.cheapest(heights.map(|y| (Rect::new(x, y, w, h), 0.0))) {
+        svg.rect(&rect, 2.0, &Paint::fill("#FFFFFF"));
+        svg.text(words, (rect.x + w / 2.0, rect.bottom() - 3.8), &font);
+    }
 }
 
 /// Writes what a reference line is below or above one of its ends.
@@ -114,33 +131,18 @@ fn name_reference(svg: &mut Svg, chart: &Chart, reference: &Reference, taken: &m
     }
 }
 
-fn other_look(feasible: bool) -> (Mark, f64, Paint) {
-    if feasible {
-        (Mark::Circle, 1.7, Paint::fill("#C4C4C4"))
-    } else {
-        (Mark::Cross, 1.6, Paint::stroke("#B0B0B0", 0.7))
-    }
-}
-
-fn front_look(knee: Option<KneeKind>) -> (Mark, f64, Paint) {
-    match knee {
-        Some(kind) => (kind.mark(), 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
-        None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
-    }
-}
-
 fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> {
     let mut entries = Vec::new();
     let mut add = |look: (Mark, f64, Paint), words| entries.push((Key::Mark(look.0, look.1, look.2), words));
-    if front.iter().any(|&i| points[i].knee.is_none()) {
-        add(front_look(None), "non-dominated");
+    if front.iter().any(|&i| !points[i].is_knee()) {
+        add(front_look(Knee::default()), "non-dominated");
     }
-    let kinds = [KneeKind::Both, KneeKind::Angle, KneeKind::Utility];
-    let present = |kind: &KneeKind| front.iter().any(|&i| points[i].knee == Some(*kind));
-    let present: Vec<KneeKind> = kinds.into_iter().filter(present).collect();
+    let kinds = [(true, true), (true, false), (false, true)].map(|(angle, utility)| Knee { angle, utility });
+    let present: Vec<Knee> = kinds.into_iter().filter(|kind| front.iter().any(|&i| points[i].knee == *kind)).collect();
     for &kind in &present {
-        let only = kind == KneeKind::Both && present.len() == 1;
-        add(front_look(Some(kind)), if only { "knee" } else { kind.words() });
+        let only = kind == kinds[0] && present.len() == 1;
+        let words = knee_look(kind).map_or("", |(words, _)| words);
+        add(front_look(kind), if only { "knee" } else { words });
     }
     let others = || points.iter().enumerate().filter(|(i, _)| !front.contains(i)).map(|(_, p)| p);
     if others().any(|p| p.feasible) {
@@ -157,17 +159,20 @@ mod tests {
     use super::*;
     use crate::chart::check::read;
 
-    fn point(nodes: u32, f2: f64, feasible: bool, knee: Option<KneeKind>, label: &str) -> ParetoPoint {
+    const NONE: Knee = Knee { angle: false, utility: false };
+    const BOTH: Knee = Knee { angle: true, utility: true };
+
+    fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
         ParetoPoint { nodes, f2, feasible, knee, label: label.to_owned() }
     }
 
     fn sample() -> Vec<ParetoPoint> {
         vec![
-            point(7, 0.0140, true, None, "ANDN(x1,x2)"),
-            point(3, 0.31, true, None, "XOR(x1,x2)"),
-            point(5, 0.0152, true, Some(KneeKind::Both), "XNOR(NAND(x1,x1),x2)"),
-            point(5, 0.2, true, None, "a & b <c>"),
-            point(9, 0.1, false, None, ""),
+            point(7, 0.0140, true, NONE, "(ANDN x1 x2)"),
+            point(3, 0.31, true, NONE, "(XOR x1 x2)"),
+            point(5, 0.0152, true, BOTH, "(XNOR (NAND x1 x1) x2)"),
+            point(5, 0.2, true, NONE, "a & b <c>"),
+            point(9, 0.1, false, NONE, ""),
         ]
     }
 
@@ -182,7 +187,7 @@ mod tests {
         let svg = pareto(&sample(), "T & <1>", Some(&reference)).unwrap();
         assert_eq!(svg, pareto(&sample(), "T & <1>", Some(&reference)).unwrap());
         let document = read(&svg);
-        assert!(document.says("XNOR(NAND(x1,x1),x2)"));
+        assert!(document.says("(XNOR (NAND x1 x1) x2)"));
         assert!(document.says("perfect circle"));
         assert!(document.says("T & <1>"));
         assert_eq!(document.count("class=\"knee\""), 1);
@@ -192,15 +197,24 @@ mod tests {
 
     #[test]
     fn one_point_and_zero_error_can_be_drawn() {
-        read(&pareto(&[point(1, 0.0, true, None, "x1")], "", None).unwrap());
-        read(&pareto(&[point(1, 0.0, true, None, "x1"), point(1, 3.0, true, None, "")], "", None).unwrap());
+        read(&pareto(&[point(1, 0.0, true, NONE, "x1")], "", None).unwrap());
+        read(&pareto(&[point(1, 0.0, true, NONE, "x1"), point(1, 3.0, true, NONE, "")], "", None).unwrap());
+    }
+
+    #[test]
+    fn a_front_without_a_feasible_model_shows_the_infeasible_ones_and_says_so() {
+        let knee = BOTH;
+        let document =
+            read(&pareto(&[point(3, 0.1, false, knee, ""), point(5, 2.0, false, NONE, "")], "", None).unwrap());
+        assert!(document.says("no model is feasible") && document.says("infeasible"));
+        assert_eq!(document.count("class=\"knee\""), 0);
+        assert_eq!(document.count("stroke=\"#B0B0B0\""), 2 * (2 + 1), "two strokes each, and one in the legend");
+        let empty = read(&pareto(&[], "", None).unwrap());
+        assert!(empty.texts.concat().starts_with("Nothing to draw"));
     }
 
     #[test]
     fn bad_data_is_named() {
-        let empty = FigureError::Empty { what: "feasible solutions" };
-        assert_eq!(pareto(&[], "", None), Err(empty.clone()));
-        assert_eq!(pareto(&[point(3, 0.1, false, None, "")], "", None), Err(empty));
         let mut points = sample();
         points[3].f2 = f64::NAN;
         assert_eq!(pareto(&points, "", None), Err(FigureError::NotFinite { what: "f2 of point", index: 3 }));

@@ -3,7 +3,7 @@
 use crate::canvas::paint::{Anchor, Font, Paint, Rect};
 use crate::canvas::style::{GREY, SMALL};
 use crate::canvas::svg::Svg;
-use crate::canvas::text::{width, wrap};
+use crate::canvas::text::{lines, width};
 use crate::chart::axes::{Axis, Chart};
 use crate::chart::place::Taken;
 use crate::pareto::data::{ParetoPoint, Reference};
@@ -11,7 +11,7 @@ use crate::pareto::data::{ParetoPoint, Reference};
 /// Indices of the feasible points that no other dominates, one for each complexity, simplest first.
 pub(crate) fn front(points: &[ParetoPoint]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].feasible).collect();
-    let knee_last = |i: usize| points[i].knee.is_none();
+    let knee_last = |i: usize| !points[i].is_knee();
     order.sort_by(|&a, &b| {
         let (p, q) = (&points[a], &points[b]);
         p.nodes.cmp(&q.nodes).then(p.f2.total_cmp(&q.f2)).then(knee_last(a).cmp(&knee_last(b))).then(a.cmp(&b))
@@ -23,7 +23,7 @@ pub(crate) fn front(points: &[ParetoPoint]) -> Vec<usize> {
         keep
     });
     // A knee the caller chose is shown even if this rule would not have it.
-    for i in (0..points.len()).filter(|&i| points[i].knee.is_some() && points[i].feasible) {
+    for i in (0..points.len()).filter(|&i| points[i].is_knee()) {
         if !order.contains(&i) {
             order.push(i);
         }
@@ -37,7 +37,7 @@ pub(crate) fn complexity(points: &[ParetoPoint]) -> Axis {
     let (lo, hi) = nodes.fold((f64::INFINITY, 0.0_f64), |(lo, hi), n| (lo.min(n), hi.max(n)));
     let odd = points.iter().all(|p| p.nodes % 2 == 1);
     let least = libm::ceil((hi - lo) / 11.0).max(1.0);
-    let mut step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|s| *s >= least).unwrap_or(least);
+    let mut step = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0].into_iter().find(|s| *s >= least).unwrap_or(least);
     let mut axis = Axis::stepped(lo - 0.7, hi + 0.7, step);
     if odd && step <= 2.0 {
         step = 2.0;
@@ -74,7 +74,9 @@ pub(crate) fn staircase(points: &[ParetoPoint], front: &[usize], chart: &Chart) 
         out.push((x, y));
         best = y;
     }
-    out.push((chart.x.hi, best));
+    if best.is_finite() {
+        out.push((chart.x.hi, best));
+    }
     out
 }
 
@@ -91,8 +93,8 @@ impl Label {
     /// The place around `at`, above and to the right first, that covers least with words and leader.
     pub fn fit(text: &str, at: (f64, f64), taken: &Taken) -> Option<Self> {
         let mut best: Option<(f64, Self)> = None;
-        for limit in [400.0, 130.0, 95.0] {
-            let lines = wrap(text, SMALL, limit);
+        for limit in [170.0, 130.0, 95.0] {
+            let lines = lines(text, SMALL, limit, 8);
             let w = lines.iter().map(|l| width(l, SMALL, false)).fold(0.0, f64::max) + 3.0;
             let h = lines.len() as f64 * LINE + 2.0;
             for (ring, gap) in [6.0, 10.0, 15.0, 22.0, 34.0, 48.0, 64.0, 80.0].into_iter().enumerate() {

@@ -39,12 +39,12 @@ pub struct TraceFigure {
     pub body_radius: f64,
     /// The moments shown, in order of time.
     pub instants: Vec<Instant>,
-    /// Times of the series below the map, seconds, increasing; at least two.
+    /// Times of the series below the map, seconds, increasing.
     pub times: Vec<f64>,
     /// For each target, at each time, the largest angle between neighbouring robots as the target sees them, degrees.
     pub gaps: Vec<Vec<f64>>,
-    /// At each time, the median over robots of the distance to the pattern, metres.
-    pub radial_error: Vec<f64>,
-    /// What counts as on the pattern: 10 % of its radius, metres.
-    pub radial_band: f64,
+    /// At each time, the median over robots of the distance to the pattern, metres; none where it is not known.
+    pub radial_error: Vec<Option<f64>>,
+    /// What counts as on the pattern: 10 % of its radius, metres; none for a pattern without one.
+    pub radial_band: Option<f64>,
 }

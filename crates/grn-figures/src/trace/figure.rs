@@ -1,8 +1,9 @@
 //! A run of the swarm: where the robots went, and how well they surrounded the targets.
 
 use crate::canvas::error::{FigureError, finite, finite_lines, within};
+use crate::canvas::note::nothing_to_draw;
 use crate::canvas::paint::{Paint, Rect};
-use crate::canvas::style::{DATA, PAGE, SERIES, SMALL};
+use crate::canvas::style::{DATA, PAGE, SMALL, series};
 use crate::canvas::svg::Svg;
 use crate::chart::legend::{Key, legend};
 use crate::chart::map::View;
@@ -15,9 +16,12 @@ const LEFT: f64 = 40.0;
 /// Draws a run across the page: the map above, the largest angular gap and the radial error below.
 ///
 /// # Errors
-/// Nothing to draw, series of unequal length, numbers that are not finite, times that do not increase.
+/// Series of unequal length, numbers that are not finite, times that do not increase.
 pub fn trace(figure: &TraceFigure) -> Result<String, FigureError> {
     check(figure)?;
+    if figure.trajectories.iter().all(Vec::is_empty) || figure.times.len() < 2 {
+        return Ok(nothing_to_draw("the run ended before a robot could move"));
+    }
     let mut svg = Svg::default();
     let room = (PAGE - LEFT - 9.0, 285.0);
     let shape = figure.window.height() / figure.window.width();
@@ -36,49 +40,41 @@ pub fn trace(figure: &TraceFigure) -> Result<String, FigureError> {
             .iter()
             .enumerate()
             .map(|(i, name)| {
-                let (colour, dash) = SERIES[i % SERIES.len()];
+                let (colour, dash) = series(i);
                 (Key::Line(Paint::stroke(colour, DATA).dashed(dash)), name.as_str())
             })
             .collect();
         (base, _) = legend(&mut svg, LEFT, base + 14.0, PAGE - 4.0, SMALL, &keys);
     }
-    let bottom = strips(&mut svg, figure, Rect::new(LEFT, base + 8.0, room.0, 62.0))?;
+    let bottom = strips(&mut svg, figure, Rect::new(LEFT, base + 18.0, room.0, 62.0))?;
     Ok(svg.finish(PAGE, bottom + 28.0))
 }
 
 fn check(figure: &TraceFigure) -> Result<(), FigureError> {
     figure.window.check("window", 0)?;
-    for (what, empty) in [
-        ("robot trajectories", figure.trajectories.iter().all(Vec::is_empty)),
-        ("instants", figure.instants.is_empty()),
-        ("angular gaps", figure.gaps.is_empty()),
-    ] {
-        if empty {
-            return Err(FigureError::Empty { what });
-        }
-    }
     let expected = figure.times.len();
-    for (what, values) in figure.gaps.iter().map(|g| ("angular gap", g)).chain([("radial error", &figure.radial_error)])
-    {
-        if values.len() != expected {
-            return Err(FigureError::Length { what, found: values.len(), expected });
+    let gaps = figure.gaps.iter().map(|gaps| ("angular gap", gaps.len()));
+    for (what, found) in gaps.chain([("radial error", figure.radial_error.len())]) {
+        if found != expected {
+            return Err(FigureError::Length { what, found, expected });
         }
-        finite(what, values.iter().copied())?;
     }
     finite("time", figure.times.iter().copied())?;
-    if expected < 2 {
-        return Err(FigureError::Length { what: "times", found: expected, expected: 2 });
-    }
     if let Some(i) = figure.times.windows(2).position(|pair| pair[1] <= pair[0]) {
         return Err(FigureError::OutOfRange { what: "time", index: i + 1, expected: "later than the one before" });
     }
-    let lengths = [figure.body_radius, figure.radial_band];
-    finite("radius or band", lengths)?;
-    within("radius or band", lengths, (0.0, f64::INFINITY), "0 or more")?;
+    let not_negative = |what, values: &[f64]| {
+        finite(what, values.iter().copied())?;
+        within(what, values.iter().copied(), (0.0, f64::INFINITY), "0 or more")
+    };
+    not_negative("radius or band", &[figure.body_radius, figure.radial_band.unwrap_or(0.0)])?;
     for gaps in &figure.gaps {
+        finite("angular gap", gaps.iter().copied())?;
         within("angular gap", gaps.iter().copied(), (0.0, 360.001), "from 0 to 360 degrees")?;
     }
-    within("radial error", figure.radial_error.iter().copied(), (0.0, f64::INFINITY), "0 or more")?;
+    // An unknown error is given a good number, so that the index is the time's.
+    let errors: Vec<f64> = figure.radial_error.iter().map(|error| error.unwrap_or(0.0)).collect();
+    not_negative("radial error", &errors)?;
     finite_lines("wall", &figure.walls)?;
     finite_lines("target path", &figure.target_paths)?;
     finite_lines("trajectory", &figure.trajectories)?;
@@ -94,8 +90,9 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::canvas::style::time_colour;
     use crate::chart::check::read;
-    use crate::chart::map::Window;
+    use crate::chart::map::{Window, frame_look, wall_look};
     use crate::trace::data::{Instant, Pose};
 
     fn figure() -> TraceFigure {
@@ -115,8 +112,8 @@ mod tests {
             instants: vec![instant(0.0), instant(40.0)],
             times: vec![0.0, 20.0, 40.0],
             gaps: vec![vec![300.0, 80.0, 60.0], vec![200.0, 100.0, 70.0]],
-            radial_error: vec![0.8, 0.2, 0.05],
-            radial_band: 0.12,
+            radial_error: vec![Some(0.8), Some(0.2), Some(0.05)],
+            radial_band: Some(0.12),
         }
     }
 
@@ -132,13 +129,46 @@ mod tests {
     }
 
     #[test]
+    fn targets_robots_walls_and_frame_look_different() {
+        let document = read(&trace(&figure()).unwrap());
+        let circles = document.tags.iter().filter(|tag| tag.starts_with("circle")).count();
+        assert_eq!(circles, 2 + 1, "the robots of both moments and the one of the legend: a target is no circle");
+        let marked = |words: &str| document.texts.iter().filter(|text| *text == words).count();
+        assert_eq!(marked("40 s"), 1 + 1, "a moment is named in the map and above the series");
+        assert_ne!(wall_look().stroke, frame_look().stroke);
+        let dashes = document.tags.iter().filter(|tag| tag.contains(&time_colour(0.0)) && tag.contains("dasharray"));
+        assert!(dashes.count() > 0, "an earlier pattern is dashed");
+    }
+
+    #[test]
+    fn what_is_not_known_leaves_a_hole() {
+        let mut unknown = figure();
+        let svg = |figure: &TraceFigure| trace(figure).unwrap();
+        unknown.radial_error = vec![None; 3];
+        unknown.radial_band = None;
+        assert!(read(&svg(&unknown)).says("not known: no robot finds the pattern"));
+        unknown.radial_error = vec![Some(0.1), None, Some(0.2)];
+        assert!(!read(&svg(&unknown)).says("not known: no robot finds the pattern"));
+        unknown.instants.clear();
+        unknown.gaps.clear();
+        read(&svg(&unknown));
+    }
+
+    #[test]
+    fn a_run_too_short_to_draw_is_said() {
+        let mut short = figure();
+        (short.times, short.radial_error) = (vec![0.0], vec![None]);
+        short.gaps.iter_mut().for_each(|gaps| gaps.truncate(1));
+        assert!(read(&trace(&short).unwrap()).texts.concat().starts_with("Nothing to draw"));
+    }
+
+    #[test]
     fn bad_runs_are_refused() {
         let refused = |change: &dyn Fn(&mut TraceFigure)| {
             let mut bad = figure();
             change(&mut bad);
             trace(&bad).unwrap_err()
         };
-        assert_eq!(refused(&|f| f.instants.clear()), FigureError::Empty { what: "instants" });
         assert_eq!(refused(&|f| f.gaps[1][2] = f64::NAN), FigureError::NotFinite { what: "angular gap", index: 2 });
         let expected = FigureError::NotFinite { what: "instant", index: 1 };
         assert_eq!(refused(&|f| f.instants[1].robots[0].heading = f64::INFINITY), expected);

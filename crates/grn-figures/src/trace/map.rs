@@ -2,12 +2,11 @@
 
 use crate::canvas::format::num;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{GREEN, GREY, INK, LABEL, THIN, WALL, time_colour};
+use crate::canvas::style::{INK, LABEL, time_colour};
 use crate::canvas::svg::Svg;
 use crate::chart::legend::Key;
-use crate::chart::map::View;
+use crate::chart::map::{View, frame_look, wall_look};
 use crate::chart::place::Taken;
-use crate::pattern::mark_target;
 use crate::trace::data::{Instant, TraceFigure};
 
 /// The least radius at which a robot is drawn, points.
@@ -18,6 +17,22 @@ pub(crate) fn share(figure: &TraceFigure, time: f64) -> f64 {
     let times = || figure.instants.iter().map(|i| i.time);
     let (lo, hi) = (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max));
     if hi > lo { (time - lo) / (hi - lo) } else { 0.0 }
+}
+
+/// The dashes of a pattern that so many moments follow: the last is whole, earlier ones are more and more broken.
+fn age(later: usize) -> &'static [f64] {
+    match later {
+        0 => &[],
+        1 => &[6.0, 1.5],
+        2 => &[3.5, 1.5],
+        3 => &[2.0, 1.5],
+        _ => &[0.9, 1.4],
+    }
+}
+
+/// How a target looks: unlike a robot in shape and lightness, whatever its colour.
+fn target_look() -> (Mark, f64, Paint) {
+    (Mark::Diamond, 2.6, Paint::stroke(INK, 0.9).filled("#FFFFFF"))
 }
 
 /// Draws the map.
@@ -31,10 +46,11 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
     if !paths.is_empty() {
         svg.path(&paths, &Paint::stroke(INK, 0.6).dashed(&[2.5, 2.0]));
     }
-    for instant in &figure.instants {
+    for (place, instant) in figure.instants.iter().enumerate() {
         let contours = view.path(&instant.contours, true);
         if !contours.is_empty() {
-            svg.path(&contours, &Paint::stroke(&time_colour(share(figure, instant.time)), 0.9));
+            let colour = time_colour(share(figure, instant.time));
+            svg.path(&contours, &Paint::stroke(&colour, 0.9).dashed(age(figure.instants.len() - 1 - place)));
         }
     }
     let mut taken = Taken::new(view.rect);
@@ -51,7 +67,8 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
         }
         for target in &instant.targets {
             let at = view.place(*target);
-            mark_target(svg, at, true);
+            let (mark, r, paint) = target_look();
+            svg.mark(mark, at, r, &paint);
             taken.add_mark(at, 3.0, 3.0);
         }
         for point in instant.contours.iter().flatten() {
@@ -63,7 +80,7 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
         time_label(svg, figure, instant, view, &mut taken);
     }
     svg.close_clip();
-    svg.rect(&view.rect, 0.0, &Paint::stroke(INK, THIN));
+    svg.rect(&view.rect, 0.0, &frame_look());
     svg.close();
 }
 
@@ -116,16 +133,17 @@ pub(crate) fn entries(figure: &TraceFigure, enlarged: bool) -> Vec<(Key, &'stati
         (Key::Line(Paint::stroke("#BDBDBD", 0.6)), "robot path"),
     ];
     if figure.instants.iter().any(|i| !i.contours.is_empty()) {
-        out.push((Key::Line(Paint::stroke(&early, 0.9)), "pattern"));
+        out.push((Key::Line(Paint::stroke(INK, 0.9)), "pattern (dashed: earlier)"));
     }
     if figure.instants.iter().any(|i| !i.targets.is_empty()) {
-        out.push((Key::Mark(Mark::Circle, 2.1, Paint::fill(GREEN)), "target"));
+        let (mark, r, paint) = target_look();
+        out.push((Key::Mark(mark, r, paint), "target"));
     }
     if !figure.target_paths.is_empty() {
         out.push((Key::Line(Paint::stroke(INK, 0.6).dashed(&[2.5, 2.0])), "target path"));
     }
     if !figure.walls.is_empty() {
-        out.push((Key::Area(Paint::stroke(GREY, 0.5).filled(WALL)), "wall"));
+        out.push((Key::Area(wall_look()), "wall"));
     }
     out
 }

@@ -1,8 +1,9 @@
 //! The time series below the map of a run.
 
 use crate::canvas::error::FigureError;
+use crate::canvas::format::num;
 use crate::canvas::paint::{Anchor, Font, Paint, Rect};
-use crate::canvas::style::{GREY, INK, LIGHT, SERIES, SMALL, THIN, time_colour};
+use crate::canvas::style::{GREY, INK, LABEL, LIGHT, PAGE, SMALL, THIN, series, time_colour};
 use crate::canvas::svg::{Svg, poly};
 use crate::canvas::text::width;
 use crate::chart::axes::{Axis, Chart, Line};
@@ -16,27 +17,46 @@ const GAP_LIMIT: f64 = 90.0;
 pub(crate) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<f64, FigureError> {
     let first = gap_chart(figure, rect);
     let second = error_chart(figure, Rect { y: rect.bottom() + 11.0, ..rect });
-    let series = |chart: &Chart, values: &[f64], (colour, dash): (&'static str, &'static [f64])| {
-        let point = |(t, v): (&f64, &f64)| (*t, v.clamp(chart.y.lo, chart.y.hi));
-        let points = figure.times.iter().zip(values).map(point).collect();
-        Line { points, colour, width: 1.0, dash }
-    };
+    let line = |points: Vec<(f64, f64)>, (colour, dash)| Line { points, colour, width: 1.0, dash };
     let level = |chart: &Chart, value: f64| {
         let points = vec![(chart.x.lo, value), (chart.x.hi, value)];
         Line { points, colour: GREY, width: THIN, dash: &[3.0, 2.0] }
     };
     let mut lines = vec![level(&first, GAP_LIMIT)];
     for (i, values) in figure.gaps.iter().enumerate() {
-        lines.push(series(&first, values, SERIES[i % SERIES.len()]));
+        let point = |(t, v): (&f64, &f64)| (*t, v.clamp(first.y.lo, first.y.hi));
+        lines.push(line(figure.times.iter().zip(values).map(point).collect(), series(i)));
     }
     moments(svg, figure, &first);
     first.draw(svg, &lines)?;
+    name_moments(svg, figure, &first);
     moments(svg, figure, &second);
-    let error = series(&second, &figure.radial_error, (INK, &[]));
-    second.draw(svg, &[level(&second, figure.radial_band), error])?;
+    let mut lines: Vec<Line> = known(figure).into_iter().map(|points| line(points, (INK, &[]))).collect();
+    lines.extend(figure.radial_band.map(|band| level(&second, band)));
+    second.draw(svg, &lines)?;
     note(svg, &first, GAP_LIMIT, "90°");
-    note(svg, &second, figure.radial_band, "10 % of the radius");
+    if let Some(band) = figure.radial_band {
+        note(svg, &second, band, "10 % of the radius");
+    }
+    if figure.radial_error.iter().all(Option::is_none) {
+        let at = (rect.x + rect.w / 2.0, second.rect.y + second.rect.h / 2.0);
+        svg.text("not known: no robot finds the pattern", at, &Font::new(LABEL, Anchor::Middle).colour(GREY));
+    }
     Ok(second.rect.bottom())
+}
+
+/// The radial error as lines that break off where it is not known.
+fn known(figure: &TraceFigure) -> Vec<Vec<(f64, f64)>> {
+    let mut lines: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    for (time, error) in figure.times.iter().zip(&figure.radial_error) {
+        match (error, lines.last_mut()) {
+            (Some(error), Some(line)) => line.push((*time, *error)),
+            (None, Some(line)) if !line.is_empty() => lines.push(Vec::new()),
+            _ => {}
+        }
+    }
+    lines.retain(|line| line.len() > 1);
+    lines
 }
 
 fn time_axis(figure: &TraceFigure) -> Axis {
@@ -53,9 +73,29 @@ fn gap_chart(figure: &TraceFigure, rect: Rect) -> Chart {
 }
 
 fn error_chart(figure: &TraceFigure, rect: Rect) -> Chart {
-    let most = figure.radial_error.iter().copied().fold(figure.radial_band * 1.3, f64::max);
+    let band = figure.radial_band.unwrap_or(0.0);
+    let most = figure.radial_error.iter().flatten().copied().fold(band * 1.3, f64::max);
     let y = Axis::linear(0.0, if most > 0.0 { most * 1.05 } else { 1.0 }, 3.0);
     Chart { rect, x: time_axis(figure), y, x_label: "Time (s)", y_label: "Radial error (m)", x_numbers: true }
+}
+
+/// Writes the times of the moments above the chart, where they do not run into each other.
+fn name_moments(svg: &mut Svg, figure: &TraceFigure, chart: &Chart) {
+    let mut free = f64::NEG_INFINITY;
+    for instant in &figure.instants {
+        if instant.time < chart.x.lo || instant.time > chart.x.hi {
+            continue;
+        }
+        let words = format!("{} s", num(instant.time));
+        let half = width(&words, SMALL, true) / 2.0;
+        let (x, y) = chart.place(instant.time, chart.y.hi);
+        let x = x.min(PAGE - 2.0 - half);
+        if x - half > free {
+            let font = Font::new(SMALL, Anchor::Middle).bold().colour(&time_colour(share(figure, instant.time)));
+            svg.text(&words, (x, y - 6.0), &font);
+            free = x + half + 4.0;
+        }
+    }
 }
 
 /// Marks the moments that the map shows.

@@ -169,7 +169,7 @@ fn a_search_can_be_put_aside() {
         }
     };
     advance(&mut search, &mut rng);
-    assert!(search.generation() == 20 && search.sigma() < 0.5 && search.deviations().iter().all(|d| *d > 0.0));
+    assert!(search.generation() == 20 && search.sigma() < 0.5);
     let (mut later, mut later_rng) = (search.clone(), rng.clone());
     advance(&mut search, &mut rng);
     advance(&mut later, &mut later_rng);

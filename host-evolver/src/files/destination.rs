@@ -1,0 +1,175 @@
+//! Where something is written that a user has named: a file, through links if it is one, or a device or pipe that stays what
+//! it is.
+
+use super::error::FileError;
+use std::fs::{File, Metadata, OpenOptions, Permissions};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// How names of files and folders begin while they are being written.
+pub(super) const UNFINISHED: &str = ".unfinished-";
+
+/// Links that lead on to links, at most; as many as Linux follows.
+const MOST_LINKS: usize = 40;
+
+/// What a path leads to.
+enum Destination {
+    /// A file that is replaced as a whole, or is not there yet. The path is that of the file itself.
+    File(PathBuf, Option<Metadata>),
+    /// A device, a pipe, or an open file of a process: something that takes bytes and is never replaced.
+    Stream,
+}
+
+/// Writes a file under a temporary name in the same folder and renames it: readers see the old content or the new. A link
+/// stays and its target is written; a device or a pipe gets the bytes.
+///
+/// # Errors
+/// What the operating system says, with the path.
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), FileError> {
+    let attempt = || match destination(path)? {
+        Destination::File(file, old) => replace(&file, old.as_ref(), content.as_ref()),
+        Destination::Stream => {
+            let mut stream = open_stream(path)?;
+            stream.write_all(content.as_ref())?;
+            stream.flush()
+        }
+    };
+    attempt().map_err(|error| FileError::from_system(path, "written", error))
+}
+
+/// Finds out whether a file can be written there, and leaves nothing but the folder that it is to be in.
+///
+/// # Errors
+/// What the operating system says, with the path.
+pub fn probe(path: &Path) -> Result<(), FileError> {
+    let attempt = || match destination(path)? {
+        Destination::File(file, _) => {
+            let folder = folder_of(&file);
+            std::fs::create_dir_all(folder)?;
+            temporary(folder).map(drop)
+        }
+        Destination::Stream => Ok(()),
+    };
+    attempt().map_err(|error| FileError::from_system(path, "written", error))
+}
+
+fn destination(path: &Path) -> io::Result<Destination> {
+    match std::fs::metadata(path) {
+        Ok(found) if found.is_dir() => Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder")),
+        Ok(found) if found.is_file() => {
+            // Behind /dev/stdout and the like is a file that a process has open: a new one in its place would not reach it.
+            if ["/dev", "/proc"].iter().any(|of_system| path.starts_with(of_system)) {
+                return Ok(Destination::Stream);
+            }
+            // A file that may not be written is not replaced either.
+            OpenOptions::new().write(true).open(path)?;
+            Ok(Destination::File(path.canonicalize()?, Some(found)))
+        }
+        Ok(found) => {
+            check_stream(&found)?;
+            Ok(Destination::Stream)
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Destination::File(end_of_links(path)?, None)),
+        Err(error) => Err(error),
+    }
+}
+
+#[cfg(unix)]
+fn check_stream(found: &Metadata) -> io::Result<()> {
+    use std::os::unix::fs::FileTypeExt;
+    let kind = found.file_type();
+    let what = if kind.is_block_device() { "a disk" } else { "a socket" };
+    if kind.is_block_device() || kind.is_socket() {
+        return Err(io::Error::new(
+            ErrorKind::InvalidInput,
+            format!("it is {what}; name a file, a pipe or a terminal"),
+        ));
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn check_stream(_: &Metadata) -> io::Result<()> {
+    Ok(())
+}
+
+/// The path at the end of links that lead to nothing yet.
+fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+    let mut end = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match std::fs::read_link(&end) {
+            Ok(next) => end = folder_of(&end).join(next),
+            Err(_) => return Ok(end),
+        }
+    }
+    Err(io::Error::new(ErrorKind::InvalidInput, "its links lead in a circle"))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)
+}
+
+fn replace(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+    let folder = folder_of(path);
+    std::fs::create_dir_all(folder)?;
+    let mut file = temporary(folder)?;
+    file.write_all(content)?;
+    file.as_file().sync_data()?;
+    if let Some(permissions) = old.map(Metadata::permissions).or_else(usual_permissions) {
+        file.as_file().set_permissions(permissions)?;
+    }
+    file.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Temporary files are private; results are for everybody.
+#[cfg(unix)]
+fn usual_permissions() -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn usual_permissions() -> Option<Permissions> {
+    None
+}
+
+/// A pipe is opened without waiting for somebody to read it, for nobody may ever do so.
+#[cfg(unix)]
+fn open_stream(path: &Path) -> io::Result<File> {
+    use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
+    use rustix::io::Errno;
+    use std::os::unix::fs::OpenOptionsExt;
+    use std::time::{Duration, Instant};
+    const PATIENCE: Duration = Duration::from_secs(2);
+    let begin = Instant::now();
+    let no_wait = OFlags::NONBLOCK.bits() as i32;
+    loop {
+        match OpenOptions::new().append(true).custom_flags(no_wait).open(path) {
+            Ok(stream) => {
+                let flags = fcntl_getfl(&stream)?;
+                fcntl_setfl(&stream, flags - OFlags::NONBLOCK)?;
+                return Ok(stream);
+            }
+            Err(error) if Errno::from_io_error(&error) == Some(Errno::NXIO) => {
+                if begin.elapsed() > PATIENCE {
+                    return Err(io::Error::new(
+                        ErrorKind::InvalidInput,
+                        "nobody reads this pipe; start the reader first",
+                    ));
+                }
+                std::thread::sleep(Duration::from_millis(20));
+            }
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn open_stream(path: &Path) -> io::Result<File> {
+    OpenOptions::new().append(true).open(path)
+}

@@ -1,0 +1,82 @@
+//! What a run was made from, and which files it has left.
+
+use crate::evolve::Settings;
+use crate::files::{self, FileError, Ledger};
+use firmware_sim::scenario::Scenario;
+use grn_core::blob::FORMAT_VERSION;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+pub(super) const MANIFEST: &str = "manifest.json";
+
+/// What a run was made from; equal ones give equal results. And the files that it has left.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// Version of this software.
+    pub grn: String,
+    /// Blob format version.
+    pub blob_format: u8,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// SHA-256 of the scenario's canonical text, hexadecimal; the text lies beside the manifest.
+    pub scenario_sha256: String,
+    /// Settings of the search, seed included.
+    pub settings: Settings,
+    /// World metres per model metre of the blobs.
+    pub scale: f32,
+    /// Whether all files are there.
+    pub finished: bool,
+    /// The files with the SHA-256 of each; of a run that is not finished, those that it may have written.
+    pub files: Ledger,
+}
+
+impl Manifest {
+    /// The manifest of a run by this software, at its beginning.
+    pub fn new(scenario: &Scenario, settings: Settings, scale: f32) -> Self {
+        Manifest {
+            grn: files::VERSION.into(),
+            blob_format: FORMAT_VERSION,
+            scenario: scenario.name().into(),
+            scenario_sha256: files::sha256(scenario.to_toml()),
+            settings,
+            scale,
+            finished: false,
+            files: Ledger::default(),
+        }
+    }
+
+    /// What is the same for every length of the run and however far it has come: whose checkpoints fit.
+    pub(super) fn identity(&self) -> String {
+        let mut settings = self.settings.clone();
+        settings.evaluations = 0;
+        files::json(&Manifest { settings, finished: false, files: Ledger::default(), ..self.clone() })
+    }
+
+    /// The manifest in a run's folder, if that can become the run of this one: it is the same, or a shorter one.
+    ///
+    /// # Errors
+    /// A damaged manifest, or the difference by name with both values.
+    pub(super) fn matching(&self, folder: &Path) -> Result<Manifest, FileError> {
+        let path = folder.join(MANIFEST);
+        files::check_version(&path)?;
+        let found: Manifest = files::read_json(&path)?;
+        let mut ours = Manifest { finished: found.finished, files: found.files.clone(), ..self.clone() };
+        ours.settings.evaluations = found.settings.evaluations;
+        if let Some(difference) = files::difference(&ours, &found) {
+            let way_out = "give the same settings to --resume, or choose another folder with --out";
+            return Err(FileError::new(path, format!("not the same run: {difference}; {way_out}")));
+        }
+        let (budget, asked) = (found.settings.evaluations, self.settings.evaluations);
+        if budget > asked {
+            return Err(FileError::new(
+                path,
+                format!(
+                    "settings.evaluations is {budget} there and {asked} now: a run can be extended, not shortened; give \
+                     --evaluations {budget} or more to --resume, or choose another folder with --out"
+                ),
+            ));
+        }
+        Ok(found)
+    }
+}

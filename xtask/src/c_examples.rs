@@ -37,6 +37,10 @@ pub fn check(bless: bool, tally: &mut Tally) {
                 ("the header is C++ too", header()),
                 ("the example prints what it should on this machine", expected(&make("run-host", &[]))),
                 ("the example prints what it should on the chip", expected(&on_the_chip)),
+                (
+                    "a program that fills the RAM links with the controller beside the core",
+                    in_ccm(make("chip-ccm", &chip)),
+                ),
                 ("the library has the golden costs", costs.and_then(|costs| golden.near("c-library.run", &costs))),
             ]
         }
@@ -98,6 +102,13 @@ fn costs(on_the_chip: &Result<Printed, String>, size: Result<Printed, String>) -
     let stack = stack.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     let lines = [format!("code and constants, bytes: {text}")].into_iter().chain(stack);
     Ok(lines.map(|line| line + "\n").collect())
+}
+
+/// Whether symbols that `nm` listed have a controller in the memory beside the core, from 0x10000000 on.
+fn in_ccm(symbols: Result<Printed, String>) -> Result<(), String> {
+    let symbols = symbols?.output;
+    let there = symbols.lines().any(|line| line.starts_with("1000") && line.contains(" controller"));
+    if there { Ok(()) } else { Err(format!("no controller from 0x10000000 on:\n{symbols}")) }
 }
 
 fn header() -> Result<(), String> {

@@ -164,6 +164,17 @@ typedef int32_t GrnNumber;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// Storage for one controller, owned by the caller: 2048 bytes, 8-aligned.
+//
+// To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
+// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
+typedef struct GrnController {
+    // What is loaded; 0 for nothing. Written by the library only, as all of the storage.
+    uint64_t magic;
+    // The controller, if one is loaded.
+    uint64_t opaque[GRN_CONTROLLER_WORDS];
+} GrnController;
+
 // A position in the world, millimetres, within 32767 either way.
 typedef struct GrnMillimetres {
     // East.
@@ -171,6 +182,16 @@ typedef struct GrnMillimetres {
     // North.
     int16_t y;
 } GrnMillimetres;
+
+// A target seen with the robot's own sensors.
+typedef struct GrnSighting {
+    // Which target: targets can be told apart.
+    uint8_t target;
+    // 0; not read.
+    uint8_t reserved;
+    // Where it is.
+    struct GrnMillimetres position;
+} GrnSighting;
 
 // A target as somebody knows it.
 typedef struct GrnTargetReport {
@@ -222,36 +243,6 @@ typedef struct GrnMessage {
     struct GrnObstacleReport obstacles[GRN_MAX_REPORTED_OBSTACLES];
 } GrnMessage;
 
-// Puts the fragments of messages together that a radio with small payloads delivers: 768 bytes, 8-aligned, owned by the
-// caller.
-//
-// Zeros are an assembler that has heard nothing: static storage, or "GrnAssembler assembler = {0};".
-typedef struct GrnAssembler {
-    // Written by the library only.
-    uint64_t opaque[GRN_ASSEMBLER_WORDS];
-} GrnAssembler;
-
-// Storage for one controller, owned by the caller: 2048 bytes, 8-aligned.
-//
-// To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
-// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
-typedef struct GrnController {
-    // What is loaded; 0 for nothing. Written by the library only, as all of the storage.
-    uint64_t magic;
-    // The controller, if one is loaded.
-    uint64_t opaque[GRN_CONTROLLER_WORDS];
-} GrnController;
-
-// A target seen with the robot's own sensors.
-typedef struct GrnSighting {
-    // Which target: targets can be told apart.
-    uint8_t target;
-    // 0; not read.
-    uint8_t reserved;
-    // Where it is.
-    struct GrnMillimetres position;
-} GrnSighting;
-
 // Everything a robot perceives in one tick.
 //
 // Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
@@ -301,61 +292,18 @@ typedef struct GrnCommand {
     struct GrnMessage broadcast;
 } GrnCommand;
 
+// Puts the fragments of messages together that a radio with small payloads delivers: 768 bytes, 8-aligned, owned by the
+// caller.
+//
+// Zeros are an assembler that has heard nothing: static storage, or "GrnAssembler assembler = {0};".
+typedef struct GrnAssembler {
+    // Written by the library only.
+    uint64_t opaque[GRN_ASSEMBLER_WORDS];
+} GrnAssembler;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
-
-// Packs a message for a radio: 8 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
-//
-// `message`: for example the broadcast of a command.
-// `bytes`, `capacity`: receive the packed message; GRN_PACKED_MESSAGE_BYTES are always enough.
-// `length`: receives how many bytes there are; 0 if the message is refused.
-//
-// docs/messages.md describes the bytes. Radios with smaller payloads use grn_message_fragment.
-GrnStatus grn_message_write(const struct GrnMessage *message, uint8_t *bytes, size_t capacity, size_t *length);
-
-// Unpacks a message that grn_message_write packed.
-//
-// `bytes`, `length`: exactly the bytes of one packed message.
-// `message`: receives it, for the percept's "heard"; all zero if it is refused.
-//
-// Returns GRN_STATUS_OK, or why it is refused: damaged messages are to be dropped.
-GrnStatus grn_message_read(const uint8_t *bytes, size_t length, struct GrnMessage *message);
-
-// Cuts a message for a radio with small payloads, down to GRN_MIN_PAYLOAD_BYTES: gives one of its fragments.
-//
-// `message`: for example the broadcast of a command.
-// `number`: counts the messages that this robot sends; it may wrap around.
-// `payload`: how many bytes the radio carries at a time. The longest message takes 48 fragments of 2 bytes, 36 of 3,
-// 6 of 8, or 2 of 20 to 37.
-// `index`: which fragment, from 0.
-// `fragment`: receives it; room for `payload` bytes, of which no more than GRN_MAX_FRAGMENT_BYTES are used.
-// `length`: receives how many bytes it has; 0 if the message has fewer fragments.
-//
-// Fragments may be sent in any order and more than once.
-GrnStatus grn_message_fragment(const struct GrnMessage *message,
-                               uint8_t number,
-                               size_t payload,
-                               size_t index,
-                               uint8_t *fragment,
-                               size_t *length);
-
-// Takes in a fragment that was heard; gives a message if that completes it.
-//
-// `assembler`: what was heard so far.
-// `assembler_size`: sizeof(GrnAssembler), which tells whether this header fits the library.
-// `tick`: counts the control ticks, from anywhere; fragments that belong together and are long apart are told by it.
-// `fragment`, `length`: exactly the bytes that the radio delivered.
-// `message`: receives the message, for the percept's "heard"; all zero if none is complete.
-//
-// Returns GRN_STATUS_OK if a message is complete and undamaged, else GRN_STATUS_MESSAGE_INCOMPLETE or what is wrong.
-// Fragments may be lost, come twice, and overtake each other. Messages of eight robots are put together at a time.
-GrnStatus grn_assembler_receive(struct GrnAssembler *assembler,
-                                size_t assembler_size,
-                                uint32_t tick,
-                                const uint8_t *fragment,
-                                size_t length,
-                                struct GrnMessage *message);
 
 // Loads a blob into a controller, all genes silent and nothing known.
 //

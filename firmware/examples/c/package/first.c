@@ -19,15 +19,17 @@ static int nothing_is_nothing(void) {
     return check(grn_percept_nothing(&function)) && memcmp(&macro, &function, sizeof macro) == 0;
 }
 
-// What a robot says arrives over a radio with payloads of 8 bytes.
-static int message_arrives(const GrnMessage *said) {
+// What a robot says arrives over a radio with payloads of 8 bytes. Each message has a number of its own.
+static int message_arrives(const GrnMessage *said, uint32_t tick) {
     static GrnAssembler assembler;
+    static uint8_t number;
     GrnMessage heard;
     size_t index, length = 1;
+    number++;
     for (index = 0; length > 0; index++) {
         uint8_t fragment[8];
-        if (!check(grn_message_fragment(said, 1, sizeof fragment, index, fragment, &length))) return 0;
-        if (grn_assembler_receive(&assembler, sizeof assembler, 0, fragment, length, &heard) == GRN_STATUS_OK) {
+        if (!check(grn_message_fragment(said, number, sizeof fragment, index, fragment, &length))) return 0;
+        if (grn_assembler_receive(&assembler, sizeof assembler, tick, fragment, length, &heard) == GRN_STATUS_OK) {
             return memcmp(said, &heard, sizeof heard) == 0;
         }
     }
@@ -36,7 +38,8 @@ static int message_arrives(const GrnMessage *said) {
 
 int main(int argc, char **argv) {
     GrnCommand command;
-    int tick, said = 0;
+    uint32_t tick;
+    int said = 0;
     size_t length;
     FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
     if (!file) {
@@ -55,7 +58,7 @@ int main(int argc, char **argv) {
         percept.target_count = 1;
         percept.targets[0].position.x = 900;
         if (!check(grn_tick(&controller, &percept, &command))) return 1;
-        if (command.has_broadcast) said += message_arrives(&command.broadcast);
+        if (command.has_broadcast) said += message_arrives(&command.broadcast, tick);
     }
     printf("grn %s: wheels %d %d, %d messages, nothing is nothing: %d\n", grn_version(), command.left, command.right, said,
            nothing_is_nothing());

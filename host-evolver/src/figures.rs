@@ -70,7 +70,8 @@ pub fn perfect_circle(ring: &Ring) -> f64 {
     2.0 / (1.0 + libm::exp(ring.steepness * (ring.d_max - ring.d_min) / 2.0))
 }
 
-/// Individuals of the last population are drawn beside the front up to so many times its worst f2 and its most nodes.
+/// Of the last population, individuals beyond this multiple of the front's worst f2 or most nodes are not drawn: they would
+/// squeeze the front into a corner.
 const NEARBY_F2: f64 = 1.25;
 const NEARBY_NODES: usize = 3;
 

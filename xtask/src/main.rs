@@ -158,8 +158,16 @@ fn fuzz() -> bool {
     let variables = [("GRN_FUZZ_INPUTS", INPUTS)];
     let decoder = ["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"];
     // With the checks of the test profile: a robot must not even come near an overflow.
-    let link =
-        ["test", "--package", "grn-tests", "--test", "link", "no_frame_makes_a_robot_panic", "--", "--nocapture"];
+    let link = [
+        "test",
+        "--package",
+        "grn-tests",
+        "--test",
+        "link_frames",
+        "no_frame_makes_a_robot_panic",
+        "--",
+        "--nocapture",
+    ];
     let radio = ["test", "--package", "grn-core", "--lib", "robot::radio"];
     let radio = cargo(&radio, &[("PROPTEST_CASES", "200000")]);
     let random = [cargo(&decoder, &variables), cargo(&link, &variables), radio] == [true; 3];

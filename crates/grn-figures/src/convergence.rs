@@ -1,4 +1,4 @@
-//! Convergence: how good the best model is after so many evaluations.
+//! Convergence: how good a run's models are, over the evaluations spent.
 
 use crate::canvas::error::{FigureError, finite};
 use crate::canvas::note::nothing_to_draw;

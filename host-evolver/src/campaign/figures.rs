@@ -1,7 +1,8 @@
 //! The pictures of a campaign.
 
 use super::plan::{Plan, PlannedScenario, slug};
-use super::tables::{Measure, RunRow, Tables, TransferRow};
+use super::rows::{Measure, RunRow, TransferRow};
+use super::tables::Tables;
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;

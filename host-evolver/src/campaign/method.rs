@@ -16,10 +16,10 @@ pub enum Method {
     Mogp {
         /// Motifs to build with.
         motifs: MotifSet,
-        /// Generations of DE that an individual gets, if not one.
+        /// Generations of DE for each individual; one if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         de_generations: Option<usize>,
-        /// What is minimised, if not the paper's two.
+        /// What is minimised; nodes and f2 if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objectives: Option<Objectives>,
     },

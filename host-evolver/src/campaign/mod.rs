@@ -8,6 +8,7 @@ mod figures;
 mod manifest;
 mod method;
 mod plan;
+mod rows;
 mod tables;
 mod trial;
 mod unit;
@@ -15,7 +16,8 @@ mod vary;
 
 pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
-pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
+pub use rows::{Comparison, Measure, RunRow, Summary, TransferRow};
+pub use tables::Tables;
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 
@@ -31,7 +33,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use trial::Group;
 
-/// One part of a campaign of which there are several: number 2 of 3 does runs 2, 5, 8, ….
+/// One of several parts of a campaign, for several machines: part 2 of 3 does runs 2, 5, 8, ….
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -86,7 +88,7 @@ impl fmt::Display for Stage {
 
 /// Hears how a campaign goes.
 pub trait Listener: Sync {
-    /// A unit is done that was worth so many evaluations of f2.
+    /// A unit is done; it cost this many evaluations of f2.
     fn done(&self, evaluations: u64);
     /// Something that the user should know.
     fn notice(&self, text: &str);

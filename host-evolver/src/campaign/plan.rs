@@ -46,7 +46,7 @@ pub struct PlannedScenario {
 pub struct PlannedMethod {
     /// Its name.
     pub name: String,
-    /// Whether the others are compared with it.
+    /// Whether it is a baseline: all methods that are none are compared with it.
     #[serde(default)]
     pub baseline: bool,
     /// What it does.

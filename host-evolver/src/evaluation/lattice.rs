@@ -41,8 +41,8 @@ impl Direction {
 
 /// A square lattice over a scenario's region and a margin around it.
 ///
-/// Rows are a whole number of lanes long, so that aligned runs of nodes can be computed together. Nodes on the border
-/// count as outside every pattern; only from the others are neighbours asked for.
+/// The length of a row is a multiple of [`WIDTH`], so that eight aligned nodes can be computed together. Nodes on the
+/// border count as outside every pattern, so neighbours are only ever needed of nodes that have all four.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     origin: Point<f64>,

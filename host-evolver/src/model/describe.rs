@@ -1,7 +1,7 @@
 //! A network in words: names, equations, an indented tree, and the data of its figures.
 
+use super::notation::Terminal;
 use super::notation::{self, Digits, Part, input_name};
-use super::tree::Terminal;
 use grn_core::network::{Gene, Network, Source};
 
 /// The name of a gene: y1, y2, … and M for the last.

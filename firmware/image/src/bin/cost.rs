@@ -29,7 +29,7 @@ use grn_core::geometry::{Point, Vector};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::Pattern;
 use grn_core::robot::radio::packed::{self, Packed};
-use grn_core::robot::radio::{Assembler, Fragments};
+use grn_core::robot::radio::{Assembler, Fragment, Fragments};
 use grn_core::robot::{Controller, Percept};
 use grn_core::scalar::{Dual, Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
@@ -88,7 +88,8 @@ fn measure_radio() -> bool {
         show(cut, instructions(&mut || fragments().for_each(|piece| _ = black_box(piece))));
         let mut assembler = Assembler::new();
         let mut heard = None;
-        let hearing = |piece| instructions(&mut || heard = black_box(assembler.receive(0, black_box(&piece))));
+        let hearing =
+            |piece: Fragment| instructions(&mut || heard = black_box(assembler.receive(0, black_box(&piece))));
         let count = fragments().map(hearing).sum();
         show(put_together, count);
         all_arrived &= heard.as_ref() == Some(message);

@@ -1,10 +1,11 @@
 //! `grn campaign` as a researcher uses it: killed, split over machines, merged, and given bad files.
 
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-
-type Outcome = Result<(), Box<dyn std::error::Error>>;
+use support::{Outcome, content, text};
 
 const SMALL: &str = r#"
 name = "small"
@@ -54,31 +55,8 @@ fn campaign(file: &Path, out: &Path, more: &[&str]) -> Command {
     command
 }
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
 fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-}
-
-/// Everything in a campaign's folder, by path.
-fn content(folder: &Path) -> std::io::Result<Vec<(PathBuf, Vec<u8>)>> {
-    fn collect(folder: &Path, top: &Path, found: &mut Vec<(PathBuf, Vec<u8>)>) -> std::io::Result<()> {
-        for entry in std::fs::read_dir(folder)? {
-            let path = entry?.path();
-            if path.is_dir() {
-                collect(&path, top, found)?;
-            } else {
-                found.push((path.strip_prefix(top).unwrap_or(&path).to_owned(), std::fs::read(&path)?));
-            }
-        }
-        Ok(())
-    }
-    let mut found = Vec::new();
-    collect(folder, folder, &mut found)?;
-    found.sort();
-    Ok(found)
 }
 
 #[test]

@@ -4,10 +4,11 @@
 mod robots;
 
 use grn_core::blob::Blob;
-use grn_core::network::{DEFAULT_GENES, Network};
+use grn_core::network::{DEFAULT_GENES, Gene, Network, STEEPNESS_RANGE};
+use grn_core::robot::Controller;
 use grn_core::robot::link::frame::Receiver;
 use grn_core::robot::link::message::{About, Identify, RESPONSE, Request, VERSION, encode_message};
-use grn_core::scalar::NumberType;
+use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use robots::{Outcome, Robot, assert_answer, grn, model, text, unfit};
 use std::io::{Read, Write};
 use std::net::TcpListener;
@@ -111,6 +112,46 @@ fn a_blob_that_cannot_drive_a_robot_is_refused_before_anything_is_erased() -> Ou
     assert_answer(&grn(&["flash", &model("nand-xnor"), "--to", &port, "--number", "q8.24"])?, 2, &["computes in f32"]);
     assert_answer(&grn(&["robots", &port])?, 0, &["slot 0: empty", "slot 1: empty"]);
     Ok(())
+}
+
+#[test]
+fn a_blob_for_one_number_type_only_is_flashed_when_that_is_said() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let [mut fit, mut unfit] = ["", ""];
+    let small = spoilt(folder.path(), "small.grn", |bytes| {
+        let blob = at_the_smallest_contrast(Blob::decode(bytes).unwrap());
+        [fit, unfit] = if drives::<f32>(&blob) { ["f32", "q8.24"] } else { ["q8.24", "f32"] };
+        *bytes = blob.encode(&mut [0; 1024]).unwrap().to_vec();
+    })?;
+    let (small, out) = (small.to_str().ok_or("not UTF-8")?, folder.path().join("files"));
+    let flash = ["flash", small, "--out", out.to_str().ok_or("not UTF-8")?];
+    let computes = format!("computes in {unfit}: the model does not tell targets from empty space");
+    assert_answer(&grn(&flash)?, 2, &["small.grn", &computes, &format!("add --number {fit}")]);
+    assert_answer(&grn(&[&flash[..], &["--number", unfit]].concat())?, 2, &[&computes]);
+    assert!(!out.exists());
+    assert_answer(&grn(&[&flash[..], &["--number", fit]].concat())?, 0, &["written"]);
+    Ok(())
+}
+
+fn drives<S: Scalar>(blob: &Blob) -> bool {
+    Controller::<S>::new(blob, 0).is_ok()
+}
+
+/// The blob with so weak a model that only one number type has a pattern of it.
+fn at_the_smallest_contrast(blob: Blob) -> Blob {
+    // Thresholds that no morphogen reaches: the steeper the sigmoid, the weaker the model.
+    let genes = blob.network.genes().iter().map(|gene| Gene { theta: 2.0, ..gene.clone() });
+    let weaker = |steepness| Blob { network: Network::new(steepness, genes.clone()).unwrap(), ..blob.clone() };
+    let [mut fit, mut unfit] = [1.0, STEEPNESS_RANGE.1];
+    assert!(drives::<f32>(&weaker(fit)) && !drives::<f32>(&weaker(unfit)));
+    for _ in 0..30 {
+        let middle = (fit + unfit) / 2.0;
+        *(if drives::<f32>(&weaker(middle)) { &mut fit } else { &mut unfit }) = middle;
+    }
+    // Rounding makes the edge of each number type ragged.
+    let near = (-5000..5000).map(|step| weaker(fit * (1.0 + step as f32 * 1e-6)));
+    let one_only = near.into_iter().find(|blob| drives::<f32>(blob) != drives::<Q8_24>(blob));
+    one_only.expect("both number types have the same patterns")
 }
 
 /// A robot that says this of itself and answers nothing else; the operations that it is asked for.
@@ -254,6 +295,7 @@ fn what_is_no_port_is_told_with_a_way_out() -> Outcome {
         ("unix:", "the path is missing"),
         ("", "give a serial port, tcp:HOST:PORT or unix:PATH"),
     ];
+    assert_answer(&grn(&["robots", "--baud", "0", "/dev/null"])?, 2, &["--baud", "not in 1.."]);
     for (port, words) in cases {
         assert_answer(&grn(&["robots", port])?, 2, &[words]);
         assert_answer(&grn(&["flash", &model("nand-xnor"), "--to", port])?, 2, &[words]);

@@ -25,6 +25,8 @@ pub enum OpenError {
     OtherKind(Kind),
     /// Another program uses the serial port.
     Busy,
+    /// The serial port cannot be set to this baud rate.
+    BaudRate(io::Error),
     /// Nobody answered in time.
     TimedOut {
         /// How long was waited.
@@ -55,6 +57,7 @@ impl fmt::Display for OpenError {
             OpenError::OtherKind(Kind::Socket) => f.write_str("this is a socket, not a serial port"),
             OpenError::OtherKind(Kind::Device) => f.write_str("this device is no serial port"),
             OpenError::Busy => f.write_str("another program uses the port"),
+            OpenError::BaudRate(_) => f.write_str("the port cannot be set to this baud rate"),
             OpenError::TimedOut { after } => write!(f, "no connection within {} s", after.as_secs_f32()),
         }
     }
@@ -63,7 +66,7 @@ impl fmt::Display for OpenError {
 impl core::error::Error for OpenError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            OpenError::Resolve(error) | OpenError::Refused(error) => Some(error),
+            OpenError::Resolve(error) | OpenError::Refused(error) | OpenError::BaudRate(error) => Some(error),
             OpenError::OtherKind(_) | OpenError::Busy | OpenError::TimedOut { .. } => None,
         }
     }
@@ -170,8 +173,8 @@ fn serial(name: &str, baud: u32) -> Result<Box<dyn Wire>, OpenError> {
     lock(&port)?;
     let mut settings = port.get_configuration().map_err(OpenError::Refused)?;
     settings.set_raw();
-    settings.set_baud_rate(baud).map_err(OpenError::Refused)?;
-    port.set_configuration(&settings).map_err(OpenError::Refused)?;
+    settings.set_baud_rate(baud).map_err(OpenError::BaudRate)?;
+    port.set_configuration(&settings).map_err(OpenError::BaudRate)?;
     port.set_write_timeout(SEND_LIMIT).map_err(OpenError::Refused)?;
     Ok(Box::new(SerialWire(port)))
 }
@@ -216,7 +219,10 @@ mod tests {
     const LIMIT: Duration = Duration::from_secs(5);
 
     fn error(port: &Port) -> OpenError {
-        port.open(115_200, LIMIT).map(|_| ()).unwrap_err()
+        match port.open(115_200, LIMIT) {
+            Ok(_) => panic!("{port} was opened"),
+            Err(error) => error,
+        }
     }
 
     #[test]

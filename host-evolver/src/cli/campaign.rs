@@ -1,9 +1,9 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, no_threads, options, output, this_command};
+use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
 use grn_input::file_name;
-use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -69,20 +69,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 struct Progress {
     bar: ProgressBar,
+    found: progress::Found,
     told: std::sync::Mutex<Instant>,
 }
 
 impl Progress {
     fn new(work: u64) -> Progress {
-        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed}{left}");
-        let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
-            let left = time_left(state.pos(), state.len().unwrap_or(0), state.elapsed());
-            let _ = left.map(|left| write!(text, " · {} left", HumanDuration(left)));
-        };
-        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar()).with_key("left", left);
+        let found = progress::Found::default();
+        let style = progress::style("campaign {bar:40} {percent} % · {elapsed} · {left}", &found);
         let bar = ProgressBar::new(work).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
-        Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
+        Progress { bar, found, told: std::sync::Mutex::new(Instant::now()) }
     }
 }
 
@@ -91,24 +88,21 @@ impl Listener for Progress {
         self.bar.suspend(|| output::notice(text));
     }
 
+    fn found(&self, evaluations: u64) {
+        self.found.add(evaluations);
+        self.bar.inc(evaluations);
+    }
+
     fn done(&self, evaluations: u64) {
         self.bar.inc(evaluations);
         let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
-            let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            let left = time_left(self.bar.position(), self.bar.length().unwrap_or(0), self.bar.elapsed());
-            match left {
-                Some(left) => output::notice(format_args!("{share} %, {} s left", left.as_secs())),
-                None => output::notice(format_args!("{share} %")),
-            }
+            let (position, total) = (self.bar.position(), self.bar.length().unwrap_or(1).max(1));
+            let left = progress::words(self.found.left(self.bar.elapsed(), position, total));
+            output::notice(format_args!("{} %, {left}", 100 * position / total));
         }
     }
-}
-
-/// How long the rest will take if it goes on as it went; unknown before a hundredth is done.
-fn time_left(done: u64, of: u64, elapsed: Duration) -> Option<Duration> {
-    (done > 0 && done.saturating_mul(100) >= of).then(|| elapsed.mul_f64(of.saturating_sub(done) as f64 / done as f64))
 }
 
 /// The tables as a person reads them.

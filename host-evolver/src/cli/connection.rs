@@ -98,6 +98,7 @@ fn unopened(port: &Port, error: &OpenError) -> &'static str {
     match error {
         OpenError::Resolve(_) => "check its name, or give its address, as in tcp:192.168.1.7:PORT",
         OpenError::Busy => "end the program that uses it: a terminal, a debugger, another grn",
+        OpenError::BaudRate(_) => "leave out --baud, or give a usual one: 9600, 115200, 230400",
         OpenError::TimedOut { .. } => "is the robot on and in reach, are address and port number right?",
         OpenError::OtherKind(Kind::Socket) => "write unix:PATH for a socket",
         OpenError::OtherKind(_) if serial => "give a serial port; `grn robots` without a port lists them",

@@ -1,7 +1,7 @@
 //! `grn evolve`.
 
 use super::simulate::{self, DEFAULT_ROBOTS, check_swarm, table, usual_config, watched};
-use super::{Answer, Failure, about, interrupt, no_threads, options, output, this_command};
+use super::{Answer, Failure, about, interrupt, no_threads, options, output, progress, this_command};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
 use crate::files::FileError;
@@ -13,7 +13,7 @@ use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
 use grn_input::{Range, file_name};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::io::ErrorKind;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -180,9 +180,10 @@ fn search_on(
         .num_threads(threads.map_or(0, NonZeroUsize::get))
         .build()
         .map_err(no_threads)?;
-    let style = ProgressStyle::with_template("evolving {bar:40} {pos}/{len} evaluations · {msg} · {eta} left");
+    let found = progress::Found::default();
+    found.add(search.state().evaluations as u64);
     let bar = ProgressBar::new(search.settings().evaluations as u64)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        .with_style(progress::style("evolving {bar:40} {pos}/{len} evaluations · {msg} · {left}", &found));
     let each = search.settings().evaluations_each() as u64;
     let best = Mutex::new(search.state().history.last().and_then(|milestone| milestone.best_f2));
     bar.set_message(best_text(*best.lock().unwrap_or_else(|poisoned| poisoned.into_inner())));

@@ -30,7 +30,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PORT")]
     to: Option<Port>,
     /// Baud rate of a serial port.
-    #[arg(long, default_value_t = DEFAULT_BAUD)]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
     /// Leave the blob on trial: the robot keeps it after 64 ticks, and goes back to the old one if it is reset before.
     #[arg(long, conflicts_with = "out")]

@@ -9,6 +9,7 @@ mod flash;
 mod interrupt;
 mod options;
 mod output;
+mod progress;
 mod robots;
 mod scatter;
 mod show;

@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Where to ask: serial ports, tcp:HOST:PORT, unix:PATH [default: all serial ports].
     ports: Vec<Port>,
     /// Baud rate of serial ports.
-    #[arg(long, default_value_t = DEFAULT_BAUD)]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
 }
 
@@ -28,7 +28,13 @@ const CONNECT_LIMIT: Duration = Duration::from_secs(3);
 const THREADS: usize = 32;
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let ports = if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() };
+    let mut ports = Vec::new();
+    for port in if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() } {
+        // Asked twice at the same time a port would answer only once.
+        if !ports.contains(&port) {
+            ports.push(port);
+        }
+    }
     if ports.is_empty() {
         output::product("no serial ports here; name others as tcp:HOST:PORT or unix:PATH")?;
         return Ok(Answer::No);

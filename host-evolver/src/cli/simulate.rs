@@ -1,6 +1,6 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, options, output, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
@@ -12,7 +12,7 @@ use firmware_sim::swarm;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use serde_json::json;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -188,8 +188,8 @@ fn with_progress(
     stop: &AtomicBool,
     simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
 ) -> Result<Simulation, Failure> {
-    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} % · {eta} left");
-    let bar = ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let style = progress::style("simulating {bar:40} {percent:>3} % · {left}", &progress::Found::default());
+    let bar = ProgressBar::new(1000).with_style(style);
     let result = simulate(&mut |share| {
         bar.set_position((share * 1000.0) as u64);
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -15,7 +15,7 @@ pub struct Arguments {
     #[arg(required = true, value_name = "PORT")]
     ports: Vec<Port>,
     /// Baud rate of serial ports.
-    #[arg(long, default_value_t = DEFAULT_BAUD)]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
 }
 

@@ -2,6 +2,7 @@
 
 use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::network::DEFAULT_GENES;
+use grn_input::{Found, InputError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::DirEntry;
@@ -131,9 +132,15 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
 ///
 /// # Errors
 /// An unreadable file, or what is wrong with the blob.
-pub fn read_blob(path: &Path) -> Result<Blob, FileError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::from_system(path, "read", error))?;
-    Blob::decode(&bytes).map_err(|error| FileError::new(path, error))
+pub fn read_blob(path: &Path) -> Result<Blob, InputError> {
+    let bytes = grn_input::read_bytes(path, Found::Blob)?;
+    Blob::decode(&bytes).map_err(|error| {
+        let expected = match Found::of(&bytes) {
+            Found::Blob => error.to_string(),
+            found => found.instead_of(Found::Blob),
+        };
+        InputError::new("", "", expected).in_file(path)
+    })
 }
 
 /// Writes a blob, whole or not at all.

@@ -12,7 +12,7 @@ mod syntax;
 mod toml;
 
 pub use error::{InputError, Place};
-pub use file_name::file_name;
+pub use file_name::{check_name, file_name};
 pub use found::{Found, MOST_BYTES, read_bytes, read_text};
 pub use range::Range;
 pub use toml::{Pair, locate, parse};

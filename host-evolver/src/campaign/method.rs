@@ -57,15 +57,9 @@ impl Method {
         }
     }
 
-    /// Whether it can work with that budget; if not, what is wrong.
-    pub(super) fn check(&self, evaluations: usize) -> Result<(), String> {
-        match self.settings(evaluations, 1) {
-            Some(settings) => settings.check().map_err(|error| error.to_string()),
-            None if evaluations < eh_grn::POPULATION => {
-                Err(format!("evaluations = {evaluations}: one generation takes {}", eh_grn::POPULATION))
-            }
-            None => Ok(()),
-        }
+    /// The evaluations that its first generation takes.
+    pub(super) fn least_evaluations(&self) -> usize {
+        self.settings(0, 1).map_or(eh_grn::POPULATION, |settings| settings.least_evaluations())
     }
 
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.

@@ -8,6 +8,7 @@ mod figures;
 mod manifest;
 mod method;
 mod plan;
+mod plan_file;
 mod rows;
 mod tables;
 mod trial;
@@ -88,6 +89,8 @@ impl fmt::Display for Stage {
 
 /// Hears how a campaign goes.
 pub trait Listener: Sync {
+    /// A unit was there already; it is worth this many evaluations of f2.
+    fn found(&self, evaluations: u64);
     /// A unit is done; it cost this many evaluations of f2.
     fn done(&self, evaluations: u64);
     /// Something that the user should know.
@@ -253,7 +256,10 @@ impl Campaign {
         stop: &AtomicBool,
         listener: &dyn Listener,
     ) -> Result<bool, FileError> {
-        if *found != Found::Whole {
+        let worth = self.plan.scenarios[unit.scenario].evaluations as u64;
+        if *found == Found::Whole {
+            listener.found(worth);
+        } else {
             if stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
@@ -265,8 +271,8 @@ impl Campaign {
             if !unit.run(&self.plan, self.folder(), world, stop)? {
                 return Ok(false);
             }
+            listener.done(worth);
         }
-        listener.done(self.plan.scenarios[unit.scenario].evaluations as u64);
         Ok(true)
     }
 

@@ -1,8 +1,9 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, output, this_command};
+use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
-use indicatif::{ProgressBar, ProgressStyle};
+use grn_input::file_name;
+use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,8 +19,8 @@ pub struct Arguments {
     /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to work with; the results do not depend on it [default: all cores].
-    #[arg(long)]
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
     #[arg(long, value_name = "I/N")]
@@ -31,7 +32,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let plan = Plan::load(&arguments.file)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
     let campaign = Campaign::begin(plan, &folder, &this_command())?;
     let progress = Progress::new(campaign.work());
@@ -42,7 +43,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, NonZeroUsize::get))
+        .build()
+        .map_err(no_threads)?;
     let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
@@ -65,15 +69,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 struct Progress {
     bar: ProgressBar,
+    found: progress::Found,
     told: std::sync::Mutex<Instant>,
 }
 
 impl Progress {
     fn new(work: u64) -> Progress {
-        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed} · {eta} left");
-        let bar = ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let found = progress::Found::default();
+        let style = progress::style("campaign {bar:40} {percent} % · {elapsed} · {left}", &found);
+        let bar = ProgressBar::new(work).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
-        Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
+        Progress { bar, found, told: std::sync::Mutex::new(Instant::now()) }
     }
 }
 
@@ -82,13 +88,19 @@ impl Listener for Progress {
         self.bar.suspend(|| output::notice(text));
     }
 
+    fn found(&self, evaluations: u64) {
+        self.found.add(evaluations);
+        self.bar.inc(evaluations);
+    }
+
     fn done(&self, evaluations: u64) {
         self.bar.inc(evaluations);
         let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
-            let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            output::notice(format_args!("{share} %, {} s left", self.bar.eta().as_secs()));
+            let (position, total) = (self.bar.position(), self.bar.length().unwrap_or(1).max(1));
+            let left = progress::words(self.found.left(self.bar.elapsed(), position, total));
+            output::notice(format_args!("{} %, {left}", 100 * position / total));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! What goes wrong with a file, and whose fault it is.
 
+use grn_input::InputError;
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What went wrong with a file.
 #[derive(Debug)]
@@ -32,6 +33,12 @@ impl FileError {
     /// The operating system refused what was to be `done`: `written`, `read`.
     pub fn from_system(path: impl Into<PathBuf>, done: &str, source: io::Error) -> Self {
         FileError { path: path.into(), fault: format!("cannot be {done}"), source: Some(source), is_damage: false }
+    }
+}
+
+impl From<InputError> for FileError {
+    fn from(error: InputError) -> Self {
+        FileError::new(error.file().unwrap_or(Path::new("")), error.expected())
     }
 }
 

@@ -1,118 +1,15 @@
 //! Every wrong number, name, file and option is refused before any work: exit code 2, no panic, no folder made, and a first
 //! line that says where, what, why and what to do.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod support;
 
-type Outcome = Result<(), Box<dyn std::error::Error>>;
-
-const WORLD: &str = r#"name = "world"
-region = [20.0, 20.0]
-snapshots = 15
-[morphogen]
-kernel = "gaussian"
-target_width = 1.5
-obstacle_width = 0.9
-level = 0.5
-[ring]
-d_min = 1.0
-d_max = 2.0
-d_obstacle = 2.0
-steepness = 10.0
-[[target]]
-path = [[3.0, 10.0], [17.0, 10.0]]
-[[wall]]
-polygon = [[6.0, 14.0], [14.0, 14.0], [14.0, 20.0], [6.0, 20.0]]
-[[wall]]
-polygon = [[6.0, 0.0], [14.0, 0.0], [14.0, 6.0], [6.0, 6.0]]
-"#;
-
-const CAMPAIGN: &str = r#"name = "campaign"
-seeds = 1
-[[scenario]]
-file = "world.toml"
-evaluations = 800
-[[method]]
-name = "m"
-algorithm = "mogp"
-motifs = "all"
-[[method]]
-name = "e"
-algorithm = "eh-grn"
-structure = 2
-[[model]]
-name = "printed"
-file = "blob.grn"
-[[transfer]]
-name = "thrown"
-from = ["world"]
-file = "world.toml"
-random = { worlds = 3, seed = 1, density = 0.03, radius = [0.3, 0.6], clearance = 1.5 }
-[vary]
-level = [0.9, 1.1]
-"#;
-
-/// A folder with a world, a campaign and a blob.
-struct Desk(tempfile::TempDir);
-
-impl Desk {
-    fn new() -> std::io::Result<Desk> {
-        let desk = Desk(tempfile::tempdir()?);
-        std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/nand-xnor.grn"), desk.path("blob.grn"))?;
-        std::fs::write(desk.path("world.toml"), WORLD)?;
-        std::fs::write(desk.path("campaign.toml"), CAMPAIGN)?;
-        Ok(desk)
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn files(&self) -> std::io::Result<Vec<PathBuf>> {
-        let mut files: Vec<_> =
-            std::fs::read_dir(self.0.path())?.map(|e| e.map(|e| e.path())).collect::<Result<_, _>>()?;
-        files.sort();
-        Ok(files)
-    }
-
-    /// Runs grn here, on Unix with at most 4 GB of addresses.
-    fn grn(&self, arguments: &[&str]) -> std::io::Result<Output> {
-        let program = env!("CARGO_BIN_EXE_grn");
-        let mut command = if cfg!(unix) {
-            let mut shell = Command::new("sh");
-            shell.args(["-c", "ulimit -v 4000000; exec \"$0\" \"$@\"", program]);
-            shell
-        } else {
-            Command::new(program)
-        };
-        command.args(arguments).current_dir(self.0.path()).env_remove("RUST_BACKTRACE").output()
-    }
-
-    /// Whether a command is refused with these words on its first line.
-    fn refuses(&self, arguments: &[&str], words: &[&str], what: &str) -> Outcome {
-        let before = self.files()?;
-        let output = self.grn(arguments)?;
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        let first = message.lines().next().unwrap_or_default();
-        let missing: Vec<_> = words.iter().filter(|word| !first.contains(**word)).collect();
-        let is_right = output.status.code() == Some(2) && !message.contains("panicked") && missing.is_empty();
-        if is_right && self.files()? == before {
-            return Ok(());
-        }
-        Err(format!("{what}: {:?}, without {missing:?}, leaves {:?}: {message}", output.status.code(), self.files()?)
-            .into())
-    }
-}
+use support::Outcome;
+use support::desk::{CAMPAIGN, Desk, WORLD, edited};
 
 /// All cases that are not as they should be.
 fn assert_all(cases: impl Iterator<Item = Outcome>) {
     let wrong: Vec<String> = cases.filter_map(Result::err).map(|error| error.to_string()).collect();
     assert!(wrong.is_empty(), "{} cases:\n{}", wrong.len(), wrong.join("\n"));
-}
-
-fn edited(text: &str, from: &str, to: &str) -> String {
-    assert!(text.contains(from), "{from}");
-    text.replacen(from, to, 1)
 }
 
 #[test]
@@ -368,69 +265,5 @@ fn wrong_options() -> Outcome {
         (&["scatter", "world.toml", "--clearance", "inf"], &["--clearance", "inf"]),
     ];
     assert_all(cases.iter().map(|(arguments, words)| desk.refuses(arguments, words, &arguments.join(" "))));
-    Ok(())
-}
-
-/// Names that would lead out of `runs/`, or to no file at all, become safe file names; the true name stays in the tables.
-#[test]
-fn name_leaves_runs_and_long_name_late() -> Outcome {
-    for name in ["../../x", "/tmp/x", "a/../../b", "CON", ".hidden", "x ", &"y".repeat(300)] {
-        let desk = Desk::new()?;
-        let above = desk.path("a/b");
-        std::fs::create_dir_all(&above)?;
-        std::fs::write(desk.path("world.toml"), edited(WORLD, "\"world\"", &format!("{name:?}")))?;
-        let named = edited(CAMPAIGN, "\"campaign\"", &format!("{name:?}")).replace("\"e\"", &format!("{name:?}"));
-        let named = named.split("[[model]]").next().unwrap_or_default().replace("world.toml", "../../world.toml");
-        std::fs::write(above.join("campaign.toml"), named)?;
-        let mut command = Command::new(env!("CARGO_BIN_EXE_grn"));
-        let output = command.args(["campaign", "campaign.toml"]).current_dir(&above).output()?;
-        assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        let runs: Vec<_> = std::fs::read_dir(above.join("runs"))?.collect::<Result<Vec<_>, _>>()?;
-        assert_eq!(runs.len(), 1, "{name}");
-        let results = std::fs::read_to_string(runs[0].path().join("results.csv"))?;
-        assert!(results.contains(name), "{name} is not in {results}");
-        let names = |folder: PathBuf| -> std::io::Result<usize> { Ok(std::fs::read_dir(folder)?.count()) };
-        assert_eq!((names(above)?, names(desk.path("a"))?, names(desk.path(""))?), (2, 1, 4), "{name} leads out");
-    }
-    Ok(())
-}
-
-#[test]
-fn an_infeasible_run_ends_with_one_and_its_reason() -> Outcome {
-    let desk = Desk::new()?;
-    // A channel 8 cm wide: whatever is in it is nearer than 5 cm to a wall.
-    let narrow = edited(WORLD, "[6.0, 14.0], [14.0, 14.0]", "[6.0, 10.04], [14.0, 10.04]");
-    let narrow = edited(&narrow, "[14.0, 6.0], [6.0, 6.0]", "[14.0, 9.96], [6.0, 9.96]");
-    std::fs::write(desk.path("world.toml"), narrow)?;
-    let output = desk.grn(&["evolve", "world.toml", "--out", "o", "--evaluations", "800"])?;
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{said}{}", String::from_utf8_lossy(&output.stderr));
-    let line = said.lines().find(|line| line.starts_with("infeasible: ")).unwrap_or_default();
-    assert!(line.contains("loses a target at") || line.contains("too near to a wall"), "{said}");
-    assert!(desk.path("o/front.csv").exists());
-    Ok(())
-}
-
-#[test]
-fn marks_of_byte_order_and_pipes_are_taken() -> Outcome {
-    let desk = Desk::new()?;
-    for name in ["world.toml", "campaign.toml"] {
-        let marked = format!("\u{feff}{}", std::fs::read_to_string(desk.path(name))?.replace("seeds = 1", "seeds = 0"));
-        std::fs::write(desk.path(name), marked)?;
-    }
-    desk.refuses(&["campaign", "campaign.toml"], &["campaign.toml:2:9: seeds = 0: "], "a marked campaign")?;
-    assert_eq!(desk.grn(&["draw", "blob.grn", "world.toml", "--json"])?.status.code(), Some(0));
-    if cfg!(unix) {
-        let shell = |script: &str| {
-            Command::new("sh").args(["-c", script, env!("CARGO_BIN_EXE_grn")]).current_dir(desk.path("")).output()
-        };
-        let evaluated = shell("printf '\\357\\273\\2770.5,0.25\\r\\n0,0\\n' | \"$0\" eval blob.grn")?;
-        assert_eq!(String::from_utf8_lossy(&evaluated.stdout).lines().count(), 2, "{evaluated:?}");
-        let endless = shell("head -c 100000000 /dev/zero | tr '\\0' 1 | \"$0\" eval blob.grn")?;
-        let message = String::from_utf8_lossy(&endless.stderr).into_owned();
-        assert!(endless.status.code() == Some(2) && message.contains("line 1: "), "{message}");
-        let shown = shell("cat blob.grn | \"$0\" show /dev/stdin")?;
-        assert!(String::from_utf8_lossy(&shown.stdout).contains("95 bytes"), "{shown:?}");
-    }
     Ok(())
 }

@@ -57,6 +57,11 @@ fn pages(drawn: Result<Vec<String>, FigureError>) {
     }
 }
 
+/// Lines, each of points.
+type Lines = Vec<Vec<[f64; 2]>>;
+/// What a gene reads, and whether it activates.
+type Reads = Vec<(usize, bool)>;
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 

@@ -92,9 +92,10 @@ pub(super) fn check_ring(ring: &Ring, region: [f64; 2]) -> Result<(), InputError
     }
     let farthest = d_max.max(d_obstacle);
     if table_entries(farthest, steepness) > MAX_TABLE {
+        let or_gentler = if steepness > 10.0 { ", or this smaller" } else { "" };
         let expected = format!(
             "with distances up to {farthest:?} metres a table of {:.1e} entries is needed, of at most {MAX_TABLE:.1e}; \
-             make the ring's distances shorter, or this smaller",
+             make the ring's distances shorter{or_gentler}",
             table_entries(farthest, steepness)
         );
         return Err(InputError::new("ring.steepness", format!("{steepness:?}"), expected));

@@ -71,7 +71,7 @@ fn unfolded(network: &Network<f32>) -> Option<Vec<Part<f32>>> {
     Some(parts)
 }
 
-/// The network as an expression in the one [notation](super::notation), or how many nodes it has if that is more than 1000.
+/// The network as an expression in the one [notation], or how many nodes it has if that is more than 1000.
 pub fn expression(network: &Network<f32>, digits: Digits) -> String {
     match unfolded(network) {
         Some(parts) => notation::expression(parts, digits),

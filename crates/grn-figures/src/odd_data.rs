@@ -8,9 +8,6 @@ use grn_optimisers::statistics::quartiles;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-type Lines = Vec<Vec<[f64; 2]>>;
-type Reads = Vec<(usize, bool)>;
-
 fn name() -> impl Strategy<Value = String> {
     prop_oneof![
         Just(String::new()),
@@ -36,7 +33,7 @@ fn at() -> impl Strategy<Value = [f64; 2]> {
     [coordinate(), coordinate()]
 }
 
-fn lines() -> impl Strategy<Value = Lines> {
+fn lines() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> {
     vec(vec(at(), 0..5), 0..4)
 }
 

@@ -16,7 +16,7 @@ fn simulate(out: &Path, more: &[&str]) -> Command {
 fn campaign(folder: &Path, out: &Path, motifs: &str) -> std::io::Result<Command> {
     let plan = folder.join(format!("{motifs}.toml"));
     let text = format!(
-        "name = \"c\"\nseeds = 2\n[[scenario]]\nfile = {:?}\nevaluations = 40\n[[method]]\nname = \"m\"\n\
+        "name = \"c\"\nseeds = 2\n[[scenario]]\nfile = {:?}\nevaluations = 400\n[[method]]\nname = \"m\"\n\
          algorithm = \"mogp\"\nmotifs = {motifs:?}\nde_generations = 0\n",
         channel().display().to_string()
     );

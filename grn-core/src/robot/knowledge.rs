@@ -55,6 +55,18 @@ impl<S: Scalar> Knowledge<S> {
         self.neighbours.known()
     }
 
+    /// Whether something that is felt close to the robot at `here`, in this direction, can be a neighbour or a wall it knows.
+    pub fn knows_towards(&self, here: Point<S>, direction: Vector<S>) -> bool {
+        let ahead = |position: Point<S>| (position - here).dot(direction);
+        let robot_ahead = |neighbour: &Neighbour<S>| {
+            let along = ahead(neighbour.position);
+            along > S::ZERO && (neighbour.position - here).cross(direction).abs() < along
+        };
+        let mut close_robots = self.neighbours.known().iter().filter(|neighbour| neighbour.was_close());
+        close_robots.any(robot_ahead)
+            || (self.obstacles.is_close() && self.obstacles().iter().any(|&point| ahead(point) > S::ZERO))
+    }
+
     /// Takes in one tick's percept of robot number `own`, which is at `here`.
     ///
     /// Of what is heard in a tick, one message's obstacle points are learned: walls stand still, and a tick has its time.

@@ -75,10 +75,15 @@ impl<S: Scalar> Avoidance<S> {
     ) -> Vector<S> {
         let push = self.push(proximity, heading);
         let against = push.dot(wanted);
-        if against >= S::ZERO || knowledge.knows_towards(here, -push) {
+        if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
             self.kept = self.kept.saturating_sub(1);
             return wanted + push;
         }
+        self.around(wanted, push, against)
+    }
+
+    /// The velocity around what pushes; `against` = push · wanted. Seldom needed, so it stays out of the usual tick's way.
+    fn around(&mut self, wanted: Vector<S>, push: Vector<S>, against: S) -> Vector<S> {
         // How much of the wanted velocity leads to the left: the robot looks against the push.
         let to_left = wanted.cross(push);
         let opposed = match self.side {

@@ -1,5 +1,5 @@
 //! A robot's NOR flash with everything that is awkward about it: it is erased in sectors, each unit is written once
-//! between erasures, and the power can fail after any step.
+//! between erasures, the power can fail after any step, and reads can fail.
 
 use crate::random::{Component, Stream};
 use core::fmt;
@@ -24,6 +24,8 @@ pub enum FlashError {
     WrittenTwice(u32),
     /// The power failed, now or before.
     PowerLost,
+    /// What lies there cannot be read.
+    Unreadable,
 }
 
 impl fmt::Display for FlashError {
@@ -33,6 +35,7 @@ impl fmt::Display for FlashError {
             FlashError::NotAligned => f.write_str("not a multiple of the word or sector size"),
             FlashError::WrittenTwice(offset) => write!(f, "the word at {offset:#x} is written twice"),
             FlashError::PowerLost => f.write_str("the power failed"),
+            FlashError::Unreadable => f.write_str("the flash cannot be read"),
         }
     }
 }
@@ -58,6 +61,7 @@ pub struct SimulatedFlash {
     bytes: Vec<u8>,
     steps: u64,
     steps_left: Option<u64>,
+    reads_left: Option<u64>,
     rubbish: Stream,
 }
 
@@ -65,7 +69,7 @@ impl SimulatedFlash {
     /// An erased flash; `seed` decides what failing steps leave.
     pub fn erased(sectors: usize, seed: u64) -> Self {
         let rubbish = Stream::new(seed, Component::Flash, 0);
-        SimulatedFlash { bytes: vec![ERASED; sectors * SECTOR], steps: 0, steps_left: None, rubbish }
+        SimulatedFlash { bytes: vec![ERASED; sectors * SECTOR], steps: 0, steps_left: None, reads_left: None, rubbish }
     }
 
     /// Steps done so far, those that failed included.
@@ -83,6 +87,11 @@ impl SimulatedFlash {
     #[must_use]
     pub fn powered(self) -> Self {
         SimulatedFlash { steps_left: None, ..self }
+    }
+
+    /// After this many more reads every read fails; with `None` no read fails.
+    pub fn fail_reads_after(&mut self, reads: Option<u64>) {
+        self.reads_left = reads;
     }
 
     /// Its content.
@@ -138,6 +147,9 @@ impl ReadNorFlash for SimulatedFlash {
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         let range = self.range(offset, bytes.len(), Self::READ_SIZE)?;
+        if let Some(left) = &mut self.reads_left {
+            *left = left.checked_sub(1).ok_or(FlashError::Unreadable)?;
+        }
         bytes.copy_from_slice(&self.bytes[range]);
         Ok(())
     }

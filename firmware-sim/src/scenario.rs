@@ -5,7 +5,7 @@
 mod file;
 pub mod limits;
 mod path;
-mod random;
+pub mod random;
 
 pub use grn_input::InputError;
 pub use limits::MAX_SNAPSHOTS;

@@ -103,6 +103,43 @@ impl<B> fmt::Debug for Swarm<B> {
     }
 }
 
+/// Whether a swarm can be set up in a scenario's world at the configured scale.
+///
+/// # Errors
+/// As [`Swarm::new`].
+pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
+    set_up(scenario, config).map(|_| ())
+}
+
+/// The world in real metres, and where the robots start.
+fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>), ConfigError> {
+    config.check()?;
+    let world = scenario.scaled(config.scale);
+    let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
+    let extent = world.paths().iter().flat_map(|path| path.points().iter().copied()).chain(walls);
+    let farthest = extent.fold(world.region()[0].max(world.region()[1]), |far, p| far.max(p.x.abs()).max(p.y.abs()));
+    let reach = MAX_COORDINATE - 1.0;
+    if farthest > reach {
+        let most = config.scale * reach / farthest;
+        return Err(ConfigError {
+            field: "scale",
+            value: config.scale.to_string(),
+            expected: format!(
+                "the world reaches to {farthest:.1} m, but robots can tell 31.7 m only; a scale up to {most:.3} is possible"
+            ),
+        });
+    }
+    let poses = placement::scattered(&world, config.robots, config.seed).ok_or_else(|| ConfigError {
+        field: "robots",
+        value: config.robots.to_string(),
+        expected: format!(
+            "so many robots find no room in the region at scale {}; fewer robots, a larger scale or a larger region are needed",
+            config.scale
+        ),
+    })?;
+    Ok((world, poses))
+}
+
 impl<B: Brain> Swarm<B> {
     /// The scenario's world at the configured scale, with robots at random places behind the first target's start, each
     /// with the brain that `brain` gives for its number.
@@ -115,25 +152,8 @@ impl<B: Brain> Swarm<B> {
         config: SwarmConfig,
         mut brain: impl FnMut(usize) -> B,
     ) -> Result<Self, ConfigError> {
-        config.check()?;
-        let world = scenario.scaled(config.scale);
-        let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
-        let extent = world.paths().iter().flat_map(|path| path.points().iter().copied()).chain(walls);
-        let farthest =
-            extent.fold(world.region()[0].max(world.region()[1]), |far, p| far.max(p.x.abs()).max(p.y.abs()));
-        if farthest > MAX_COORDINATE - 1.0 {
-            return Err(ConfigError {
-                field: "scale",
-                value: config.scale.to_string(),
-                expected: format!("the scaled world extends to {farthest} m, but messages reach 31.7 m only"),
-            });
-        }
+        let (world, poses) = set_up(scenario, &config)?;
         let n = config.robots;
-        let poses = placement::scattered(&world, n, config.seed).ok_or_else(|| ConfigError {
-            field: "robots",
-            value: n.to_string(),
-            expected: format!("so many robots find no room in the region at scale {}", config.scale),
-        })?;
         let drives = (0..n).map(|robot| {
             let mut stream = Stream::new(config.seed, Component::Variation, robot);
             let mut factor = || 1.0 + config.variation * stream.symmetric();

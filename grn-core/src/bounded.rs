@@ -13,6 +13,11 @@ pub fn filled<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N
     list
 }
 
+/// The first of the largest numbers: its index and itself; (0, 0) for none.
+pub(crate) fn largest_of(numbers: impl Iterator<Item = u32>) -> (usize, u32) {
+    (0..).zip(numbers).fold((0, 0), |best, next| if next.1 > best.1 { next } else { best })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -22,9 +27,4 @@ mod tests {
         let list: Vec<u8, 3> = filled(0..9);
         assert_eq!(list, [0, 1, 2]);
     }
-}
-
-/// The first of the largest numbers: its index and itself; (0, 0) for none.
-pub(crate) fn largest_of(numbers: impl Iterator<Item = u32>) -> (usize, u32) {
-    (0..).zip(numbers).fold((0, 0), |best, next| if next.1 > best.1 { next } else { best })
 }

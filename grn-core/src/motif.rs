@@ -42,7 +42,7 @@ impl Motif {
         match self {
             Motif::Pos | Motif::Neg => 1..=1,
             Motif::Or | Motif::Nor => 2..=MAX_INPUTS,
-            _ => 2..=2,
+            Motif::And | Motif::Nand | Motif::Andn | Motif::Orn | Motif::Xor | Motif::Xnor => 2..=2,
         }
     }
 

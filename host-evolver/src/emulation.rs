@@ -45,7 +45,7 @@ pub fn simulate(
     }
 }
 
-/// The first robots have the emulated brains, the others native ones.
+/// The brains of a swarm: emulated ones for the first robots, native ones for the rest.
 fn mixed<B: Brain + 'static>(
     emulated: Vec<Box<dyn Brain>>,
     native: impl Fn(usize) -> B,

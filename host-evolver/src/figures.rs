@@ -1,7 +1,7 @@
 //! From models, worlds and runs to the plain data that figures are drawn from, and the pictures of a folder.
 
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
-use crate::evolve::{FrontMember, Individual};
+use crate::evolve::{FrontMember, Individual, Objectives};
 use crate::files::Contents;
 use crate::model::describe;
 use crate::model::notation::Digits;
@@ -70,7 +70,8 @@ pub fn perfect_circle(ring: &Ring) -> f64 {
     2.0 / (1.0 + libm::exp(ring.steepness * (ring.d_max - ring.d_min) / 2.0))
 }
 
-/// Individuals of the last population are drawn beside the front up to so many times its worst f2 and its most nodes.
+/// Of the last population, individuals beyond this multiple of the front's worst f2 or most nodes are not drawn: they would
+/// squeeze the front into a corner.
 const NEARBY_F2: f64 = 1.25;
 const NEARBY_NODES: usize = 3;
 
@@ -78,7 +79,37 @@ const NEARBY_NODES: usize = 3;
 ///
 /// # Errors
 /// Numbers that cannot be drawn.
-pub fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Result<String, FigureError> {
+pub fn front(
+    objectives: &Objectives,
+    front: &[FrontMember],
+    others: &[&Individual],
+    ring: &Ring,
+) -> Result<String, FigureError> {
+    if *objectives == Objectives::paper() { pareto(front, others, ring) } else { by_pairs(objectives, front, others) }
+}
+
+/// A front in any objectives; models without a pattern, whose values are out of all proportion, are left out.
+fn by_pairs(objectives: &Objectives, front: &[FrontMember], others: &[&Individual]) -> Result<String, FigureError> {
+    let member = |member: &FrontMember| grn_figures::ObjectivesPoint {
+        values: objectives.in_order(member.nodes as f64, member.f2, &member.further),
+        non_dominated: true,
+        feasible: member.is_feasible(),
+        knee: member.knee,
+        label: describe::expression(&member.network, Digits::None),
+    };
+    let other = |individual: &&Individual| grn_figures::ObjectivesPoint {
+        values: individual.objectives.clone(),
+        non_dominated: false,
+        feasible: individual.is_feasible(),
+        knee: Knee::default(),
+        label: individual.tree.expression(Digits::None),
+    };
+    let in_proportion = |point: &grn_figures::ObjectivesPoint| point.values.iter().all(|value| value.abs() < f64::MAX);
+    let points = front.iter().map(member).chain(others.iter().map(other)).filter(in_proportion).collect();
+    grn_figures::objectives(&grn_figures::ObjectivesFigure { labels: objectives.descriptions().collect(), points })
+}
+
+fn pareto(front: &[FrontMember], others: &[&Individual], ring: &Ring) -> Result<String, FigureError> {
     let most_nodes = front.iter().map(|member| member.nodes).max().unwrap_or(0);
     let worst_f2 = front.iter().map(|member| member.f2).fold(0.0, f64::max);
     let is_near = |individual: &&&Individual| {

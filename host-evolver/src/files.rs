@@ -2,84 +2,25 @@
 
 use grn_core::blob::{Blob, max_encoded_size};
 use grn_core::network::DEFAULT_GENES;
+use grn_input::{Found, InputError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fmt;
 use std::fs::DirEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 
 mod destination;
+mod error;
 mod ledger;
 mod lock;
 mod seal;
 
+use destination::UNFINISHED;
 pub use destination::{probe, write};
+pub use error::{FileError, is_fault_of_system};
 pub use ledger::{Contents, Ledger, remove_empty};
 pub use lock::FolderLock;
-pub use seal::{sealed, unsealed};
-
-/// How names of files and folders begin while they are being written.
-const UNFINISHED: &str = ".unfinished-";
-
-/// What went wrong with a file.
-#[derive(Debug)]
-pub struct FileError {
-    path: PathBuf,
-    fault: String,
-    source: Option<io::Error>,
-    is_damage: bool,
-}
-
-impl FileError {
-    /// `fault` says what is wrong with the file and what to do.
-    pub fn new(path: impl Into<PathBuf>, fault: impl fmt::Display) -> Self {
-        FileError { path: path.into(), fault: fault.to_string(), source: None, is_damage: false }
-    }
-
-    /// The content of a file is not what it was when it was written.
-    pub fn damaged(path: impl Into<PathBuf>, fault: impl fmt::Display) -> Self {
-        FileError { is_damage: true, ..FileError::new(path, format_args!("damaged: {fault}")) }
-    }
-
-    /// Whether the file is damaged, and neither out of reach nor of another kind.
-    pub fn is_damage(&self) -> bool {
-        self.is_damage
-    }
-
-    /// The operating system refused what was to be `done`: `written`, `read`.
-    pub fn from_system(path: impl Into<PathBuf>, done: &str, source: io::Error) -> Self {
-        FileError { path: path.into(), fault: format!("cannot be {done}"), source: Some(source), is_damage: false }
-    }
-}
-
-/// Whether the system failed, and not what it was asked for: a full disk, a broken device, too many open files.
-pub fn is_fault_of_system(error: &io::Error) -> bool {
-    use io::ErrorKind as Kind;
-    /// EIO, ENFILE and EMFILE of every Unix, for which the standard library has no names.
-    const UNNAMED: [i32; 3] = [5, 23, 24];
-    matches!(
-        error.kind(),
-        Kind::StorageFull
-            | Kind::QuotaExceeded
-            | Kind::FileTooLarge
-            | Kind::WriteZero
-            | Kind::OutOfMemory
-            | Kind::BrokenPipe
-    ) || cfg!(unix) && error.raw_os_error().is_some_and(|code| UNNAMED.contains(&code))
-}
-
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.path.display(), self.fault)
-    }
-}
-
-impl std::error::Error for FileError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.source.as_ref().map(|error| error as _)
-    }
-}
+pub use seal::{sealed, sha256, unsealed};
 
 /// Fills a new folder under a temporary name beside its place and renames it: it is there whole or not at all.
 ///
@@ -191,9 +132,15 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
 ///
 /// # Errors
 /// An unreadable file, or what is wrong with the blob.
-pub fn read_blob(path: &Path) -> Result<Blob, FileError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::from_system(path, "read", error))?;
-    Blob::decode(&bytes).map_err(|error| FileError::new(path, error))
+pub fn read_blob(path: &Path) -> Result<Blob, InputError> {
+    let bytes = grn_input::read_bytes(path, Found::Blob)?;
+    Blob::decode(&bytes).map_err(|error| {
+        let expected = match Found::of(&bytes) {
+            Found::Blob => error.to_string(),
+            found => found.instead_of(Found::Blob),
+        };
+        InputError::new("", "", expected).in_file(path)
+    })
 }
 
 /// Writes a blob, whole or not at all.
@@ -308,12 +255,6 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
 /// The first line that is no such record.
 pub fn parse_csv<T: DeserializeOwned>(text: &str) -> Result<Vec<T>, csv::Error> {
     csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect()
-}
-
-/// The SHA-256 of some bytes, hexadecimal.
-pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
-    use sha2::Digest;
-    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ pub mod evolve;
 pub mod figures;
 pub mod files;
 pub mod model;
+pub mod quoting;
 pub mod results;
 pub mod run;
 pub mod sectors;

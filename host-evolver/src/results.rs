@@ -42,7 +42,7 @@ pub fn contents(
         names.push(name);
     }
     contents.insert(FRONT.into(), front_csv(objectives, front, &names));
-    contents.insert(HISTORY.into(), files::csv_records(history));
+    contents.insert(HISTORY.into(), history_csv(history));
     let knee = knee.ok_or_else(|| FileError::new(FRONT, "the front is empty"))?;
     Ok((contents, knee))
 }
@@ -122,6 +122,15 @@ fn number<T: FromStr>(
     let text = record.get(place).unwrap_or_default();
     let line = record.position().map_or(0, csv::Position::line);
     text.parse().map_err(|_| damaged(format!("line {line}, column {}: {text:?}", place + 1)))
+}
+
+fn history_csv(history: &[Milestone]) -> Vec<u8> {
+    let line = |milestone: &Milestone| {
+        let Milestone { evaluations, best_f2, feasible, front, hypervolume } = milestone;
+        let best_f2 = best_f2.map(|f2| f2.to_string()).unwrap_or_default();
+        [evaluations.to_string(), best_f2, feasible.to_string(), front.to_string(), hypervolume.to_string()]
+    };
+    files::csv(["evaluations", "best_f2", "feasible", "front", "hypervolume"], history.iter().map(line))
 }
 
 /// The history in a run's folder.

@@ -11,7 +11,7 @@ pub use manifest::Manifest;
 use crate::evaluation::{Model, World};
 use crate::evolve::{FrontMember, Search, State};
 use crate::figures::{self, Pictures};
-use crate::files::{self, Contents, FileError, FolderLock};
+use crate::files::{self, Contents, FileError, FolderLock, Ledger};
 use crate::model::deploy;
 use crate::results;
 use firmware_sim::scenario::Scenario;
@@ -150,7 +150,10 @@ impl RunFolder {
             results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
         contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
         let mut pictures = Pictures::default();
-        pictures.add("pareto.svg", figures::pareto(&front, &search.others(), &world.scenario().ring()));
+        pictures.add(
+            "pareto.svg",
+            figures::front(&search.settings().objectives, &front, &search.others(), &world.scenario().ring()),
+        );
         pictures.add("tree.svg", Ok(figures::tree(&knee.network)));
         pictures.add("grn.svg", figures::grn(&knee.network));
         if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
@@ -161,17 +164,23 @@ impl RunFolder {
         Ok(Results { contents, knee, not_drawn })
     }
 
-    /// Brings the folder to hold these results and nothing of a shorter run; `finished` if nothing else is to come.
+    /// Writes results to which others are to come.
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn publish(&mut self, contents: &Contents, finished: bool) -> Result<(), FileError> {
-        let write = |files: &files::Ledger, whole: bool| {
-            self.write_manifest(&Manifest {
-                files: files.clone(),
-                finished: finished && whole,
-                ..self.manifest.clone()
-            })
+    pub fn add(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger| self.write_manifest(&Manifest { files: files.clone(), ..self.manifest.clone() });
+        self.manifest.files = self.manifest.files.add(self.lock.folder(), contents, write)?;
+        Ok(())
+    }
+
+    /// Brings the folder to hold these results, all of them, and nothing of a shorter run.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn finish(&mut self, contents: &Contents) -> Result<(), FileError> {
+        let write = |files: &Ledger, finished: bool| {
+            self.write_manifest(&Manifest { files: files.clone(), finished, ..self.manifest.clone() })
         };
         self.manifest.files = self.manifest.files.publish(self.lock.folder(), contents, write)?;
         Ok(())

@@ -1,10 +1,11 @@
 //! `grn campaign` as a researcher uses it: killed, split over machines, merged, and given bad files.
 
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-
-type Outcome = Result<(), Box<dyn std::error::Error>>;
+use support::{Outcome, content, text};
 
 const SMALL: &str = r#"
 name = "small"
@@ -54,31 +55,8 @@ fn campaign(file: &Path, out: &Path, more: &[&str]) -> Command {
     command
 }
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
 fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-}
-
-/// Everything in a campaign's folder, by path.
-fn content(folder: &Path) -> std::io::Result<Vec<(PathBuf, Vec<u8>)>> {
-    fn collect(folder: &Path, top: &Path, found: &mut Vec<(PathBuf, Vec<u8>)>) -> std::io::Result<()> {
-        for entry in std::fs::read_dir(folder)? {
-            let path = entry?.path();
-            if path.is_dir() {
-                collect(&path, top, found)?;
-            } else {
-                found.push((path.strip_prefix(top).unwrap_or(&path).to_owned(), std::fs::read(&path)?));
-            }
-        }
-        Ok(())
-    }
-    let mut found = Vec::new();
-    collect(folder, folder, &mut found)?;
-    found.sort();
-    Ok(found)
 }
 
 #[test]
@@ -166,7 +144,7 @@ fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     refused(&small().replace("[\"channel\"]", "[\"canal\"]"), &[], &["canal", "channel"])?;
     refused(&small().replace("nand-xnor.grn", "nothing.grn"), &[], &["nothing.grn", "cannot be read"])?;
     refused(&small().replace("\"EH-GRN 2\"", "\"mogp\""), &[], &["mogp", "another"])?;
-    refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["random obstacles", "density", "no room"])?;
+    refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["transfer[0].random.density", "no room"])?;
     refused(&small().replace("worlds = 3", "worlds = 3, depth = 1"), &[], &["campaign.toml", "depth"])?;
     refused(&small().replace("structure = 2", "structure = 2\ncolour = 1"), &[], &["campaign.toml", "colour"])?;
     refused(&small(), &["--shard", "3/2"], &["3/2", "2/3"])?;

@@ -176,6 +176,23 @@ fn a_run_without_its_manifest_is_done_again_once_and_foreign_files_in_it_stay() 
 }
 
 #[test]
+fn a_damaged_manifest_of_a_campaign_is_refused_and_its_runs_are_taken_over() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    let plan = plan(scratch.path())?;
+    let (folder, other) = (scratch.path().join("out"), scratch.path().join("other"));
+    assert_code(&campaign(&plan, &folder).output()?, 0);
+    let whole = std::fs::read(folder.join("manifest.json"))?;
+    cut(&folder.join("manifest.json"), 50)?;
+    assert_refused(&campaign(&plan, &folder).output()?, &["manifest.json: damaged", "--out", "--merge"]);
+    let output = campaign(&plan, &other).arg("--merge").arg(&folder).output()?;
+    assert_code(&output, 0);
+    assert!(text(&output.stderr).contains("2 runs taken over"), "{}", text(&output.stderr));
+    std::fs::write(folder.join("manifest.json"), whole)?;
+    assert_eq!(different(&folder, &other)?, Vec::<PathBuf>::new());
+    Ok(())
+}
+
+#[test]
 fn whole_runs_in_each_others_place_are_refused() -> Outcome {
     let scratch = tempfile::tempdir()?;
     let plan = plan(scratch.path())?;

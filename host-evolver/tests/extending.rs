@@ -146,6 +146,8 @@ fn a_changed_campaign_leaves_no_stale_pictures_and_nothing_of_others_is_deleted(
     assert_code(&campaign(&with, &fresh)?, 0);
     let output = campaign(&with, &folder)?;
     assert_code(&output, 0);
+    let told = text(&output.stderr);
+    assert!(told.contains("runs/channel-two-targets/m: of another state of the campaign"), "{told}");
     let others: Vec<PathBuf> =
         different(&fresh, &folder)?.into_iter().filter(|path| !path.starts_with("runs/channel-two-targets")).collect();
     assert_eq!(others, [PathBuf::from("mine.csv"), PathBuf::from("typical/notes.txt")]);

@@ -1,9 +1,15 @@
-//! Simulated robots with blobs on them, for the tests of slots and link.
+//! Simulated robots with blobs on them and conversations with them, for the tests of slots and link.
 
 use firmware_sim::flash::{SECTOR, SimulatedFlash};
 use grn_core::blob::{Blob, Identity, max_encoded_size};
 use grn_core::network::{DEFAULT_GENES, Network};
+use grn_core::robot::link::Server;
+use grn_core::robot::link::frame::{Frame, Receiver};
 use grn_core::robot::slots::Layout;
+use grn_core::scalar::NumberType;
+use grn_link::wire::LocalRobot;
+use grn_link::{Client, Patience};
+use std::time::Duration;
 
 /// Both slots in two sectors each.
 pub const LAYOUT: Layout = Layout::adjacent(2 * SECTOR as u32);
@@ -70,4 +76,40 @@ pub fn blob_of_genes(genes: usize) -> Vec<u8> {
     let mut buffer = [0; max_encoded_size(64)];
     let bytes = Blob { network, ..blob }.encode(&mut buffer).map(<[u8]>::to_vec);
     bytes.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A robot that computes in f32.
+pub type TestServer = Server<SimulatedFlash, f32>;
+
+/// Patience with a robot in the same process.
+pub const PATIENCE: Patience =
+    Patience { response: Duration::from_millis(100), erasure: Duration::from_millis(100), tries: 500 };
+
+/// A robot with this flash.
+///
+/// # Panics
+/// If its slots cannot be used.
+pub fn server(flash: SimulatedFlash) -> TestServer {
+    Server::start(flash, LAYOUT, "test robot", NumberType::F32).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A conversation with a robot.
+///
+/// # Panics
+/// If it does not answer.
+pub fn client(server: TestServer) -> Client<LocalRobot<SimulatedFlash, f32>> {
+    Client::connect(LocalRobot::new(server), PATIENCE).unwrap_or_else(|error| panic!("{error}")).0
+}
+
+/// Sends bytes as they are; the operation and payload of the answer.
+pub fn say(server: &mut TestServer, bytes: &[u8]) -> Option<(u8, Vec<u8>)> {
+    let mut receiver = Receiver::new();
+    let mut answer = None;
+    for &byte in bytes {
+        for &answered in server.receive(byte).unwrap_or_default() {
+            let frame = receiver.receive(answered);
+            answer = frame.map(|Frame { operation, payload, .. }| (operation, payload.to_vec())).or(answer);
+        }
+    }
+    answer
 }

@@ -1,60 +1,32 @@
 //! The link between host and robot: what is said, what is refused, and what bad wires do to it.
 #![allow(clippy::unwrap_used, reason = "what only tests call")]
 
-use firmware_sim::flash::SimulatedFlash;
 use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::faults::{Faults, FaultyWire};
 use firmware_sim::{Brain, Scenario, Swarm, SwarmConfig};
 use grn_core::blob::{Blob, BlobError, FORMAT_VERSION};
 use grn_core::motif::Motif;
-use grn_core::robot::link::frame::{self, Frame, Receiver};
+use grn_core::robot::link::Refusal;
+use grn_core::robot::link::frame::{self};
 use grn_core::robot::link::message::{
     About, Activate, Begin, Chunk, Commit, Confirm, REFUSED, RESPONSE, Request, Reset, RollBack, Status, VERSION,
     decode_message, encode_request,
 };
 use grn_core::robot::link::refusal::{BlobFault, PerceptFault};
 use grn_core::robot::link::server::TRIAL_TICKS;
-use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::percept::MAX_POSITION;
 use grn_core::robot::slots::{MAX_BLOB, Stage};
-use grn_core::robot::{Controller, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::{Controller, Percept};
 use grn_core::scalar::NumberType;
 use grn_link::flashing::{Flashed, flash};
 use grn_link::wire::LocalRobot;
 use grn_link::{Client, LinkError, Patience, Wire};
 use grn_tests::decoder::sealed;
-use grn_tests::robots::{LAYOUT, Shipped, blob_of_genes, empty_flash};
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
+use grn_tests::robots::{PATIENCE, Shipped, blob_of_genes, client, empty_flash, say, server};
 use std::io::ErrorKind;
 use std::time::Duration;
 
 type Outcome = Result<(), Box<dyn std::error::Error>>;
-type TestServer = Server<SimulatedFlash, f32>;
-
-const PATIENCE: Patience =
-    Patience { response: Duration::from_millis(100), erasure: Duration::from_millis(100), tries: 500 };
-
-fn server(flash: SimulatedFlash) -> TestServer {
-    Server::start(flash, LAYOUT, "test robot", NumberType::F32).unwrap()
-}
-
-fn client(server: TestServer) -> Client<LocalRobot<SimulatedFlash, f32>> {
-    Client::connect(LocalRobot::new(server), PATIENCE).unwrap().0
-}
-
-/// Sends bytes as they are; the operation and payload of the answer.
-fn say(server: &mut TestServer, bytes: &[u8]) -> Option<(u8, Vec<u8>)> {
-    let mut receiver = Receiver::new();
-    let mut answer = None;
-    for &byte in bytes {
-        for &answered in server.receive(byte).unwrap_or_default() {
-            let frame = receiver.receive(answered);
-            answer = frame.map(|Frame { operation, payload, .. }| (operation, payload.to_vec())).or(answer);
-        }
-    }
-    answer
-}
 
 fn upload_raw(client: &mut Client<impl Wire>, bytes: &[u8]) -> Result<(), LinkError> {
     client.ask(&Begin { length: bytes.len() as u32, identity: *bytes[7..].first_chunk().unwrap() })?;
@@ -342,107 +314,4 @@ fn bad_wires_delay_an_upload_but_never_spoil_it() {
     }
     println!("{uploads} of 300 uploads in {connections} connections");
     assert_eq!(uploads, 300);
-}
-
-/// An operation and its payload as a host might mean it.
-fn sensible(rng: &mut Pcg64, model: &Shipped) -> (u8, Vec<u8>) {
-    let identity = if rng.random_bool(0.5) { model.identity } else { rng.random() };
-    let mut buffer = [0; 600];
-    let operation = rng.random_range(1..11);
-    let written = match operation {
-        Begin::OPERATION => postcard::to_slice(&Begin { length: rng.random_range(0..500), identity }, &mut buffer),
-        Chunk::OPERATION => {
-            let bytes = (0..8 * rng.random_range(0..9)).map(|_| rng.random()).collect();
-            postcard::to_slice(&Chunk { offset: 8 * rng.random_range(0..3), bytes }, &mut buffer)
-        }
-        Activate::OPERATION | Confirm::OPERATION | RollBack::OPERATION => {
-            postcard::to_slice(&Activate { identity }, &mut buffer)
-        }
-        Reset::OPERATION => postcard::to_slice(&Reset { robot: rng.random() }, &mut buffer),
-        Percept::OPERATION => postcard::to_slice(&percept(rng), &mut buffer),
-        _ => postcard::to_slice(&(), &mut buffer),
-    };
-    (operation, written.unwrap().to_vec())
-}
-
-fn senseless(rng: &mut Pcg64) -> (u8, Vec<u8>) {
-    let longest = if rng.random_bool(0.1) { 400 } else { 30 };
-    let length = rng.random_range(0..longest);
-    let operation = if rng.random_bool(0.9) { rng.random_range(0..12) } else { rng.random() };
-    (operation, (0..length).map(|_| rng.random()).collect())
-}
-
-/// Anything, near and far; a few that no robot can have.
-fn percept(rng: &mut Pcg64) -> Percept {
-    let spread = if rng.random_bool(0.5) { 2000 } else { i16::MAX };
-    let mut millimetres = {
-        let mut rng = Pcg64::seed_from_u64(rng.random());
-        move || Millimetres { x: rng.random_range(-spread..=spread), y: rng.random_range(-spread..=spread) }
-    };
-    let heard = |_| Message {
-        sender: rng.random(),
-        position: millimetres(),
-        target: Some(TargetReport {
-            target: rng.random_range(0..6),
-            position: millimetres(),
-            velocity: rng.random(),
-            age: rng.random(),
-        }),
-        obstacles: (0..4).map(|_| ObstacleReport { position: millimetres(), age: rng.random() }).collect(),
-    };
-    let heard = (0..3).map(heard).collect();
-    let possible = rng.random_bool(0.9);
-    let far = if possible { MAX_POSITION } else { i32::MAX };
-    let headings = [[16_384, 0], [0, -16_384], [11_585, 11_585], [-14_189, 8_192]];
-    Percept {
-        position: [(); 2].map(|()| rng.random_range(-far..=far)),
-        heading: if possible { headings[rng.random_range(0..headings.len())] } else { rng.random() },
-        proximity: rng.random(),
-        targets: (0..2).map(|target| Sighting { target, position: millimetres() }).collect(),
-        obstacles: (0..4).map(|_| millimetres()).collect(),
-        heard,
-    }
-}
-
-/// Random frames, sound and unsound, with and without sense; `GRN_FUZZ_INPUTS` asks for more.
-#[test]
-fn no_frame_makes_a_robot_panic() -> Outcome {
-    let inputs = match std::env::var("GRN_FUZZ_INPUTS") {
-        Ok(asked) => asked.parse()?,
-        Err(_) => 200_000,
-    };
-    let model = Shipped::named("nand-xnor");
-    let mut client = client(server(empty_flash(0)));
-    flash(&mut client, &model.bytes, model.identity, true, |_| {})?;
-    let mut server = client.into_wire().into_server();
-    let mut rng = Pcg64::seed_from_u64(11);
-    let (mut answered, mut done) = (0_u64, 0_u64);
-    for input in 0..inputs {
-        if input > 0 && input % 1_000_000 == 0 {
-            println!("{input} frames");
-        }
-        let (operation, mut payload) =
-            if rng.random_bool(0.5) { sensible(&mut rng, &model) } else { senseless(&mut rng) };
-        if !payload.is_empty() && rng.random_bool(0.2) {
-            let at = rng.random_range(0..payload.len());
-            payload[at] = rng.random();
-        }
-        let version = if rng.random_bool(0.9) { VERSION } else { rng.random() };
-        let write = |room: &mut [u8]| {
-            room.get_mut(..payload.len())?.copy_from_slice(&payload);
-            Some(payload.len())
-        };
-        let mut bytes = frame::encode([version, input as u8, operation], write).map_err(|_| "too long")?;
-        if rng.random_bool(0.2) {
-            let at = rng.random_range(0..bytes.len());
-            bytes[at] = rng.random();
-        }
-        if let Some((operation, _)) = say(&mut server, &bytes) {
-            answered += 1;
-            done += u64::from(operation != REFUSED);
-        }
-    }
-    println!("{inputs} frames, {answered} answered, {done} requests done");
-    assert!(answered > inputs / 2 && done > inputs / 5, "{answered} answered, {done} done: the exercise has no edge");
-    Ok(())
 }

@@ -66,6 +66,7 @@ fn frozen_messages_have_exactly_these_bytes() {
         (Refusal::NoController, vec![15]),
         (Refusal::Percept(PerceptFault::Position), vec![16, 0]),
         (Refusal::Percept(PerceptFault::Heading), vec![16, 1]),
+        (Refusal::SequenceUsedUp, vec![17]),
     ];
     for (refusal, expected) in refusals {
         assert_eq!(bytes(&refusal), expected, "{refusal:?}");

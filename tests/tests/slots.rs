@@ -3,8 +3,12 @@
 
 use embedded_storage::nor_flash::NorFlash;
 use firmware_sim::flash::SimulatedFlash;
-use grn_core::blob::Identity;
+use grn_core::blob::{Blob, Identity};
+use grn_core::robot::link::message::{Activate, REFUSED, encode_request};
+use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::slots::{Layout, MAX_BLOB, MIN_SLOT, SlotError, Slots, Stage, image};
+use grn_core::robot::{Controller, Millimetres, Percept, Sighting};
+use grn_core::scalar::NumberType;
 use grn_tests::robots::{LAYOUT, Shipped, empty_flash};
 
 type Outcome = Result<(), SlotError>;
@@ -139,6 +143,34 @@ fn an_image_for_a_programmer_is_in_charge() -> Outcome {
     Ok(())
 }
 
+/// A flash whose blob in charge has the highest number there is; the other blob came from a programmer.
+fn at_the_top(old: &Shipped, older: &Shipped) -> SimulatedFlash {
+    let mut flash = empty_flash(5);
+    let image = image(&older.bytes, u32::MAX - 1).unwrap();
+    flash.bytes_mut()[..image.len()].copy_from_slice(&image);
+    let (mut slots, _) = start(flash).unwrap();
+    install(&mut slots, old).unwrap();
+    assert_eq!(slots.status().unwrap().map(|slot| slot.sequence), [u32::MAX - 1, u32::MAX]);
+    slots.into_flash()
+}
+
+#[test]
+fn after_the_highest_number_no_upload_is_lost() -> Outcome {
+    let [new, old, older] = models();
+    assert_eq!(image(&new.bytes, u32::MAX), Err(SlotError::SequenceUsedUp));
+    let before = at_the_top(&old, &older);
+    let (mut slots, _) = start(before.clone())?;
+    assert_eq!(upload(&mut slots, &new), Err(SlotError::SequenceUsedUp));
+    let flash = slots.into_flash();
+    assert_eq!(flash.bytes(), before.bytes(), "nothing is erased for an upload that would be lost");
+    let (mut slots, active) = start(flash)?;
+    assert_eq!(active, Some(old.identity));
+    slots.roll_back(old.identity)?;
+    install(&mut slots, &new)?;
+    assert_eq!(start(slots.into_flash())?.1, Some(new.identity));
+    Ok(())
+}
+
 #[test]
 fn a_spoilt_blob_is_never_in_charge() -> Outcome {
     let [_, old, older] = models();
@@ -216,4 +248,57 @@ fn power_loss_at_every_step_of_activating_confirming_and_rolling_back() {
     slots.activate(new.identity).unwrap();
     slots.confirm(new.identity).unwrap();
     survives_power_loss(&slots.into_flash(), &old, &new, |slots| slots.roll_back(new.identity));
+}
+
+#[test]
+fn power_loss_at_every_step_of_an_upload_over_a_higher_number() {
+    let [new, old, rolled_back] = models();
+    let (mut slots, _) = start(empty_flash(6)).unwrap();
+    install(&mut slots, &old).unwrap();
+    let mut flash = slots.into_flash();
+    let (image, place) = (image(&rolled_back.bytes, u32::MAX - 1).unwrap(), LAYOUT.starts[1] as usize);
+    flash.bytes_mut()[place..place + image.len()].copy_from_slice(&image);
+    let (mut slots, active) = start(flash).unwrap();
+    assert_eq!(active, Some(rolled_back.identity));
+    slots.roll_back(rolled_back.identity).unwrap();
+    survives_power_loss(&slots.into_flash(), &old, &new, |slots| install(slots, &new));
+}
+
+/// The old controller must not go on driving when the flash says that another blob is in charge.
+#[test]
+fn a_robot_whose_flash_cannot_be_read_after_a_change_of_blobs_stops() {
+    let [new, old, older] = models();
+    let (mut slots, _) = start(with_history(&old, &older, 4)).unwrap();
+    upload(&mut slots, &new).unwrap();
+    let uploaded = slots.into_flash();
+    let mut percept = Percept::nothing();
+    let _ = percept.targets.push(Sighting { target: 0, position: Millimetres { x: 2000, y: 0 } });
+    let drives = |blob: &Shipped| {
+        let blob: Blob = Blob::decode(&blob.bytes).unwrap();
+        Controller::<f32>::new(&blob, 0).unwrap().tick(&percept).unwrap()
+    };
+    assert_ne!(drives(&old), drives(&new), "the blobs cannot be told apart");
+    let activate = encode_request(1, &Activate { identity: new.identity }).unwrap();
+    let (mut started, mut stopped) = (0, 0);
+    for reads in 0.. {
+        let mut flash = uploaded.clone();
+        flash.fail_reads_after(Some(reads));
+        let Ok(mut server) = Server::<_, f32>::start(flash, LAYOUT, "robot", NumberType::F32) else { continue };
+        started += 1;
+        let answer = activate.iter().find_map(|&byte| server.receive(byte).map(<[u8]>::to_vec)).unwrap();
+        let refused = answer.contains(&REFUSED);
+        let driven = server.tick(&percept);
+        let changed = server.into_flash().bytes() != uploaded.bytes();
+        match (refused, changed) {
+            (true, false) => assert_eq!(driven, Ok(drives(&old)), "after {reads} reads"),
+            (true, true) => assert_eq!(driven, Err(Refusal::NoController), "after {reads} reads"),
+            (false, changed) => {
+                assert!(changed);
+                assert_eq!(driven, Ok(drives(&new)));
+                break;
+            }
+        }
+        stopped += usize::from(changed);
+    }
+    assert!(started > stopped && stopped > 0, "{stopped} of {started}: the exercise has no edge");
 }

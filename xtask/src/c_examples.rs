@@ -1,5 +1,6 @@
 //! The C library's examples, compiled and run: on this machine, and on a bare Cortex-M4F in QEMU.
 
+use crate::c_package;
 use crate::tally::Tally;
 use crate::target::golden::Golden;
 use crate::target::tools::{self, Compiler};
@@ -24,7 +25,7 @@ pub fn check(bless: bool, tally: &mut Tally) {
     let ready = tools::emulators(&["qemu-system-arm"])
         .and_then(|()| tools::programs(&TOOLS))
         .and_then(|()| Compiler::find(&[TARGET]));
-    let checks: Vec<(&str, Result<(), String>)> = match ready {
+    let mut checks: Vec<(&str, Result<(), String>)> = match ready {
         Err(error) => vec![("compilers and emulator are there", Err(error))],
         Ok(compiler) => {
             let chip = compiler.environment(TARGET);
@@ -36,10 +37,15 @@ pub fn check(bless: bool, tally: &mut Tally) {
                 ("the header is C++ too", header()),
                 ("the example prints what it should on this machine", expected(&make("run-host", &[]))),
                 ("the example prints what it should on the chip", expected(&on_the_chip)),
+                (
+                    "a program that fills the RAM links with the controller beside the core",
+                    in_ccm(make("chip-ccm", &chip)),
+                ),
                 ("the library has the golden costs", costs.and_then(|costs| golden.near("c-library.run", &costs))),
             ]
         }
     };
+    checks.extend(c_package::checks());
     for (name, outcome) in checks {
         println!("test C: {name} ... {}", if outcome.is_ok() { "ok" } else { "FAILED" });
         match outcome {
@@ -96,6 +102,13 @@ fn costs(on_the_chip: &Result<Printed, String>, size: Result<Printed, String>) -
     let stack = stack.map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
     let lines = [format!("code and constants, bytes: {text}")].into_iter().chain(stack);
     Ok(lines.map(|line| line + "\n").collect())
+}
+
+/// Whether symbols that `nm` listed have a controller in the memory beside the core, from 0x10000000 on.
+fn in_ccm(symbols: Result<Printed, String>) -> Result<(), String> {
+    let symbols = symbols?.output;
+    let there = symbols.lines().any(|line| line.starts_with("1000") && line.contains(" controller"));
+    if there { Ok(()) } else { Err(format!("no controller from 0x10000000 on:\n{symbols}")) }
 }
 
 fn header() -> Result<(), String> {

@@ -1,10 +1,13 @@
 //! What a person would otherwise type by hand. `cargo xtask` without arguments says what there is.
 
 mod c_examples;
+mod c_install;
+mod c_package;
 mod tally;
 mod target;
 
 use std::env;
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use tally::Tally;
 
@@ -17,12 +20,15 @@ const HELP: &str = "cargo xtask TASK
   c [--bless]
          test the C library and its examples, on this machine and on an emulated chip; a part of test. --bless writes its
          header, the examples' expected output and the library's golden costs anew
+  c-install PREFIX
+         build the C library and install it under PREFIX: header, static and shared library, pkg-config file, CMake package
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
          run the paper's experiments (campaigns/*.toml, about ten minutes on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
-  fuzz   feed the blob decoder 10 million mutated inputs and a robot 10 million random frames, then the decoder 10 million
+  fuzz   feed the blob decoder 10 million mutated inputs, a robot 10 million random frames, and the radio's assembler
+         200 thousand random conversations, then the decoder 10 million
          inputs of libFuzzer's (this part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
 ";
 
@@ -36,6 +42,7 @@ fn main() -> ExitCode {
             let succeeded = c_library(bless(), &mut tally);
             tally.close(succeeded)
         }
+        "c-install" => c_install(),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => ["models", "digest"].iter().all(|what| {
             cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless", "--", what], &[])
@@ -116,6 +123,24 @@ fn c_library(bless: bool, tally: &mut Tally) -> bool {
     succeeded
 }
 
+/// Installs the C library and lists what was written.
+fn c_install() -> bool {
+    let Some(prefix) = env::args_os().nth(2) else {
+        eprintln!("cargo xtask c-install PREFIX: say where to, for example /usr/local or a folder of your own");
+        return false;
+    };
+    match c_install::install(Path::new(&prefix)) {
+        Ok(written) => {
+            written.iter().for_each(|path| println!("{}", path.display()));
+            true
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            false
+        }
+    }
+}
+
 fn reproduce() -> bool {
     const CAMPAIGNS: [&str; 3] = ["paper", "sensitivity", "de-generations"];
     let done = CAMPAIGNS.iter().all(|name| {
@@ -133,9 +158,19 @@ fn fuzz() -> bool {
     let variables = [("GRN_FUZZ_INPUTS", INPUTS)];
     let decoder = ["test", "--release", "--package", "grn-tests", "--test", "decoder", "--", "--nocapture"];
     // With the checks of the test profile: a robot must not even come near an overflow.
-    let link =
-        ["test", "--package", "grn-tests", "--test", "link", "no_frame_makes_a_robot_panic", "--", "--nocapture"];
-    let random = [cargo(&decoder, &variables), cargo(&link, &variables)] == [true; 2];
+    let link = [
+        "test",
+        "--package",
+        "grn-tests",
+        "--test",
+        "link_frames",
+        "no_frame_makes_a_robot_panic",
+        "--",
+        "--nocapture",
+    ];
+    let radio = ["test", "--package", "grn-core", "--lib", "robot::radio"];
+    let radio = cargo(&radio, &[("PROPTEST_CASES", "200000")]);
+    let random = [cargo(&decoder, &variables), cargo(&link, &variables), radio] == [true; 3];
     let ready = Command::new("cargo").args(["+nightly", "fuzz", "--version"]).output();
     if !ready.is_ok_and(|output| output.status.success()) {
         eprintln!(

@@ -184,7 +184,7 @@ fn has_outlier(values: &[f64]) -> bool {
     quartiles(values).is_some_and(|q| values.iter().any(|&value| is_outlier(value, values.len(), &q)))
 }
 
-/// Whether a value lies beyond the whiskers of a box of so many values.
+/// Whether a value lies beyond the whiskers.
 fn is_outlier(value: f64, count: usize, q: &Quartiles) -> bool {
     let reach = 1.5 * (q.upper - q.lower);
     count >= BOX && !(q.lower - reach <= value && value <= q.upper + reach)

@@ -23,6 +23,8 @@ mod convergence;
 mod grn;
 mod pareto;
 mod pattern;
+#[cfg(feature = "png")]
+mod png;
 mod rates;
 mod trace;
 mod tree;
@@ -40,7 +42,10 @@ pub use grn::data::{Gene, Input, Source};
 pub use grn::figure::grn;
 pub use pareto::data::{ParetoPoint, Reference};
 pub use pareto::figure::pareto;
+pub use pareto::pairs::{ObjectivesFigure, ObjectivesPoint, objectives};
 pub use pattern::{Panel, PatternFigure, Target, pattern};
+#[cfg(feature = "png")]
+pub use png::{PngError, png};
 pub use rates::{RateGroup, RateRow, RatesFigure, rates};
 pub use trace::data::{Instant, Pose, TraceFigure};
 pub use trace::figure::trace;

@@ -54,6 +54,11 @@ fn pages(drawn: Result<Vec<String>, FigureError>) {
     }
 }
 
+/// Lines, each of points.
+type Lines = Vec<Vec<[f64; 2]>>;
+/// What a gene reads, and whether it activates.
+type Reads = Vec<(usize, bool)>;
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
@@ -116,7 +121,7 @@ proptest! {
         panels in vec((name(), proptest::option::of(window()), lines(), lines(), vec((at(), any::<bool>()), 0..4)), 0..40),
         columns in proptest::option::of(0_usize..9),
     ) {
-        let panel = |(title, window, walls, contours, targets): (_, _, _, Vec<Vec<[f64; 2]>>, Vec<([f64; 2], bool)>)| Panel {
+        let panel = |(title, window, walls, contours, targets): (_, _, _, Lines, Vec<([f64; 2], bool)>)| Panel {
             title,
             window,
             walls,
@@ -164,7 +169,7 @@ proptest! {
 
     #[test]
     fn any_network_is_drawn(genes in vec((name(), name(), 0.0..2.0, vec((0_usize..99, any::<bool>()), 1..5)), 0..40)) {
-        let gene = |(index, (name, motif, theta, reads)): (usize, (String, String, f64, Vec<(usize, bool)>))| {
+        let gene = |(index, (name, motif, theta, reads)): (usize, (String, String, f64, Reads))| {
             let source = |from: usize| match from % (index + 2) {
                 0 => Source::X1,
                 1 => Source::X2,

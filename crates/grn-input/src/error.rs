@@ -129,6 +129,8 @@ impl fmt::Display for InputError {
         if file.is_some() || place.is_some() {
             write!(f, " ")?;
         }
+        // What comes from a file may not command the terminal.
+        let value = value.replace(char::is_control, "\u{fffd}");
         match (key.is_empty(), value.is_empty()) {
             (false, false) => write!(f, "{key} = {value}: ")?,
             (false, true) => write!(f, "{key}: ")?,

@@ -1,5 +1,6 @@
 //! Names that people give to things, as names of files.
 
+use crate::InputError;
 use sha2::Digest;
 
 /// The most bytes of a file name; with what is added to it, such as `-seed-18446744073709551615.svg`, it stays far below
@@ -9,6 +10,27 @@ const MOST_BYTES: usize = 80;
 const DIGITS: usize = 12;
 /// Names of devices, which Windows takes for no file even with an extension.
 const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
+
+/// The most bytes of a name.
+const MOST_NAME_BYTES: usize = 1000;
+
+/// Checks that a text can name something: one line with letters or digits, not too long for a table.
+///
+/// # Errors
+/// The key, the name and what is wrong with it.
+pub fn check_name(key: &str, name: &str) -> Result<(), InputError> {
+    let fault = |expected: String| Err(InputError::new(key, format!("{name:?}"), expected));
+    match () {
+        () if !name.chars().any(char::is_alphanumeric) => fault("a name with letters or digits is needed".into()),
+        () if name.chars().any(char::is_control) => fault("a name is one line without control characters".into()),
+        () if name.len() > MOST_NAME_BYTES => {
+            let shown: String = name.chars().take(20).collect();
+            let expected = format!("a name of {} bytes is too long; at most {MOST_NAME_BYTES} are allowed", name.len());
+            Err(InputError::new(key, format!("\"{shown} …\""), expected))
+        }
+        () => Ok(()),
+    }
+}
 
 /// The name of the file or folder for something that a person has named: one part of a path that is safe everywhere.
 ///

@@ -15,7 +15,7 @@ pub fn unclosed(text: &str, noticed: usize) -> Option<(usize, &'static str)> {
             '"' | '\'' => match string_length(rest) {
                 Some(length) => length,
                 None if rest.starts_with("\"\"\"") || rest.starts_with("'''") => {
-                    return Some((at, &rest[..3])).map(opened);
+                    return Some(opened((at, &rest[..3])));
                 }
                 None => rest.find('\n').unwrap_or(rest.len()),
             },

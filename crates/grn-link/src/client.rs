@@ -1,4 +1,4 @@
-//! Requests to a robot: sent again until they are answered, for a bounded number of times.
+//! Requests to a robot. A request is sent again until its answer comes, up to a number of times.
 
 use crate::wire::Wire;
 use core::fmt;
@@ -11,14 +11,14 @@ use grn_core::robot::link::message::{
 use std::io;
 use std::time::Instant;
 
-/// How long and how often a client tries.
+/// How long a client waits for a robot, and how often it asks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patience {
     /// How long it waits for a response before it sends the request again.
     pub response: Duration,
     /// How long it waits while a robot erases a slot.
     pub erasure: Duration,
-    /// How often it sends a request at most.
+    /// How often it sends a request before it gives up.
     pub tries: u32,
 }
 
@@ -29,39 +29,45 @@ impl Default for Patience {
     }
 }
 
-/// Why a request came to nothing.
+/// Why a request has no answer.
 #[derive(Debug)]
 pub enum LinkError {
     /// The wire failed.
     Wire(io::Error),
     /// The robot did not answer.
     Silent {
-        /// How often it was asked.
+        /// How often the request was sent.
         tries: u32,
     },
     /// The robot refused.
     Refused(Refusal),
-    /// The robot answered something that is no response to the request.
-    Nonsense,
+    /// The robot answered this request, but with bytes that are no such answer.
+    Unreadable,
+    /// The request is longer than a frame.
+    TooLong,
 }
 
 impl fmt::Display for LinkError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            LinkError::Wire(error) => write!(f, "{error}"),
-            LinkError::Silent { tries } => write!(
-                f,
-                "no answer after {tries} tries: is the robot on, its firmware one of ours, and the port the right one?"
-            ),
-            LinkError::Refused(refusal) => write!(f, "the robot refuses: {refusal}"),
-            LinkError::Nonsense => {
-                f.write_str("the robot's answer cannot be read: update the robot's firmware or this program")
-            }
+            LinkError::Wire(_) => f.write_str("the connection failed"),
+            LinkError::Silent { tries } => write!(f, "the robot does not answer; the request was sent {tries} times"),
+            LinkError::Refused(_) => f.write_str("the robot refuses"),
+            LinkError::Unreadable => f.write_str("the robot's answer cannot be read"),
+            LinkError::TooLong => f.write_str("the request is longer than a frame of the link"),
         }
     }
 }
 
-impl std::error::Error for LinkError {}
+impl core::error::Error for LinkError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            LinkError::Wire(error) => Some(error),
+            LinkError::Refused(refusal) => Some(refusal),
+            LinkError::Silent { .. } | LinkError::Unreadable | LinkError::TooLong => None,
+        }
+    }
+}
 
 impl From<io::Error> for LinkError {
     fn from(error: io::Error) -> Self {
@@ -78,7 +84,7 @@ pub struct Client<W> {
 }
 
 impl<W: Wire> Client<W> {
-    /// Begins a conversation: asks who is there.
+    /// Begins a conversation: asks the robot what it is.
     ///
     /// # Errors
     /// [`LinkError`].
@@ -93,7 +99,7 @@ impl<W: Wire> Client<W> {
         self.wire
     }
 
-    /// Asks until an answer comes.
+    /// Sends a request, up to [`Patience::tries`] times, and waits for its answer.
     ///
     /// # Errors
     /// [`LinkError`].
@@ -101,13 +107,13 @@ impl<W: Wire> Client<W> {
         self.ask_up_to(self.patience.tries, request)
     }
 
-    /// Asks so many times at most.
+    /// Sends a request, up to `tries` times, and waits for its answer.
     ///
     /// # Errors
     /// [`LinkError`].
     pub fn ask_up_to<R: Request>(&mut self, tries: u32, request: &R) -> Result<R::Response, LinkError> {
         self.sequence = self.sequence.wrapping_add(1);
-        let bytes = encode_request(self.sequence, request).map_err(|_| LinkError::Nonsense)?;
+        let bytes = encode_request(self.sequence, request).map_err(|_| LinkError::TooLong)?;
         for _ in 0..tries {
             self.wire.send(&bytes)?;
             if let Some(answer) = self.await_answer::<R>()? {
@@ -117,7 +123,7 @@ impl<W: Wire> Client<W> {
         Err(LinkError::Silent { tries })
     }
 
-    /// The answer to the present request; `None` if it does not come in time.
+    /// The answer to the request sent last; `None` if it does not come in time. Answers to earlier ones are skipped.
     fn await_answer<R: Request>(&mut self) -> Result<Option<Result<R::Response, LinkError>>, LinkError> {
         let patience = if R::OPERATION == Begin::OPERATION { self.patience.erasure } else { self.patience.response };
         let deadline = Instant::now() + patience;
@@ -137,10 +143,10 @@ impl<W: Wire> Client<W> {
                     continue;
                 }
                 if frame.operation == R::OPERATION | RESPONSE {
-                    return Ok(Some(decode_message(frame.payload).ok_or(LinkError::Nonsense)));
+                    return Ok(Some(decode_message(frame.payload).ok_or(LinkError::Unreadable)));
                 }
                 if frame.operation == REFUSED {
-                    let refusal = decode_message(frame.payload).map_or(LinkError::Nonsense, LinkError::Refused);
+                    let refusal = decode_message(frame.payload).map_or(LinkError::Unreadable, LinkError::Refused);
                     return Ok(Some(Err(refusal)));
                 }
             }

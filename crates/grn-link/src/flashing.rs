@@ -1,4 +1,4 @@
-//! A blob onto a robot: upload, verify, activate, confirm.
+//! Bringing a blob onto a robot: upload, verify, activate, confirm.
 
 use crate::client::{Client, LinkError};
 use crate::wire::Wire;
@@ -7,9 +7,9 @@ use grn_core::robot::link::Refusal;
 use grn_core::robot::link::message::{Activate, Begin, Chunk, Commit, Confirm, MAX_CHUNK, Status};
 use grn_core::robot::slots::Stage;
 
-/// The shortest chunk, bytes; what a slot is written in.
+/// The shortest chunk, bytes: robots write their slots in units of 8.
 const MIN_CHUNK: usize = 8;
-/// After so many tries a chunk is sent in halves, which pass a bad wire more easily.
+/// How often a chunk is sent before it is split in half: on a bad wire a shorter frame is more likely to arrive whole.
 const TRIES_BEFORE_HALVING: u32 = 6;
 
 /// How far flashing has come.
@@ -17,7 +17,7 @@ const TRIES_BEFORE_HALVING: u32 = 6;
 pub enum Progress {
     /// The robot erases a slot.
     Erasing,
-    /// So many bytes of the blob are on the robot.
+    /// The robot takes the blob; it has this many bytes.
     Uploading(usize),
     /// The robot reads the blob back and checks it.
     Verifying,
@@ -36,11 +36,12 @@ pub enum Flashed {
     WasInCharge,
 }
 
-/// Uploads a blob and puts it in charge; with `confirm` its trial ends at once. Can be repeated after any failure.
+/// Uploads a blob and puts it in charge; with `confirm` its trial ends at once. `watch` hears of every step before it is
+/// taken. After any failure all of it can be repeated.
 ///
 /// # Errors
-/// [`LinkError`]; the blob that was in charge before is in charge then, unless the failure came after
-/// [`Progress::Activating`].
+/// [`LinkError`]. If it comes before [`Progress::Activating`], the blob that was in charge still is; if it comes then, either
+/// may be in charge; if it comes after that, the new one is.
 pub fn flash<W: Wire>(
     client: &mut Client<W>,
     blob: &[u8],

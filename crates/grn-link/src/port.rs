@@ -1,68 +1,112 @@
-//! Ways to a robot: serial ports and sockets.
+//! Where robots answer: serial ports and sockets, by their names.
 
-use crate::wire::{Wire, read_within};
+use core::fmt;
+use core::net::Ipv6Addr;
+use core::str::FromStr;
 use serial2::SerialPort;
-use std::convert::Infallible;
-use std::fmt;
 use std::io;
-use std::net::TcpStream;
-use std::str::FromStr;
-use std::time::Duration;
 
 /// Where a robot answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Port {
     /// A serial port, by its name in the operating system.
     Serial(String),
-    /// A TCP socket, `host:port`.
-    Tcp(String),
+    /// A TCP socket.
+    Tcp {
+        /// A name, or an address of version 4 or 6 without brackets.
+        host: String,
+        /// Its port number, from 1.
+        number: u16,
+    },
     /// A Unix socket, by its path.
     Unix(String),
 }
 
-impl FromStr for Port {
-    type Err = Infallible;
+/// Why text names no [`Port`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortError {
+    /// It is empty.
+    Empty,
+    /// `tcp:` without a host.
+    NoHost,
+    /// `tcp:HOST` without a port number.
+    NoNumber,
+    /// What stands for the port number is none.
+    Number,
+    /// A host with colons that is no IPv6 address.
+    Address,
+    /// `unix:` without a path.
+    NoPath,
+}
 
-    /// `tcp:HOST:PORT`, `unix:PATH`, or else the name of a serial port.
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(match text.split_once(':') {
-            Some(("tcp", address)) => Port::Tcp(address.into()),
-            Some(("unix", path)) => Port::Unix(path.into()),
-            _ => Port::Serial(text.into()),
+impl fmt::Display for PortError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            PortError::Empty => "the name of the port is empty; give a serial port, tcp:HOST:PORT or unix:PATH",
+            PortError::NoHost => "the host is missing; write tcp:HOST:PORT",
+            PortError::NoNumber => "the port number is missing; write tcp:HOST:PORT with a number from 1 to 65535",
+            PortError::Number => "the port number is none from 1 to 65535; write tcp:HOST:PORT",
+            PortError::Address => "the host is no IPv6 address; write tcp:HOST:PORT, an IPv6 address in brackets",
+            PortError::NoPath => "the path is missing; write unix:PATH",
         })
     }
+}
+
+impl core::error::Error for PortError {}
+
+impl FromStr for Port {
+    type Err = PortError;
+
+    /// `tcp:HOST:PORT`, `unix:PATH`, or else the name of a serial port.
+    ///
+    /// ```
+    /// use grn_link::Port;
+    ///
+    /// assert_eq!("tcp:[::1]:7000".parse(), Ok(Port::Tcp { host: "::1".into(), number: 7000 }));
+    /// assert_eq!("/dev/ttyACM0".parse(), Ok(Port::Serial("/dev/ttyACM0".into())));
+    /// assert!("tcp:robot:70000".parse::<Port>().is_err());
+    /// ```
+    fn from_str(text: &str) -> Result<Self, PortError> {
+        match text.split_once(':') {
+            Some(("tcp", address)) => tcp(address),
+            Some(("unix", "")) => Err(PortError::NoPath),
+            Some(("unix", path)) => Ok(Port::Unix(path.into())),
+            _ if text.is_empty() => Err(PortError::Empty),
+            _ => Ok(Port::Serial(text.into())),
+        }
+    }
+}
+
+fn tcp(address: &str) -> Result<Port, PortError> {
+    let (host, number) = address.rsplit_once(':').ok_or(PortError::NoNumber)?;
+    if host.is_empty() {
+        return Err(PortError::NoHost);
+    }
+    if number.is_empty() || number.ends_with(']') {
+        return Err(PortError::NoNumber);
+    }
+    let bare = host.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')).unwrap_or(host);
+    // Behind a percent sign stands the network interface of a link-local address.
+    let without_interface = bare.split_once('%').map_or(bare, |(address, _)| address);
+    if bare.contains([':', '[', ']']) && without_interface.parse::<Ipv6Addr>().is_err() {
+        return Err(PortError::Address);
+    }
+    let number = number.parse().ok().filter(|&number| number != 0).ok_or(PortError::Number)?;
+    Ok(Port::Tcp { host: bare.into(), number })
 }
 
 impl fmt::Display for Port {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Port::Serial(name) => f.write_str(name),
-            Port::Tcp(address) => write!(f, "tcp:{address}"),
+            Port::Tcp { host, number } if host.contains(':') => write!(f, "tcp:[{host}]:{number}"),
+            Port::Tcp { host, number } => write!(f, "tcp:{host}:{number}"),
             Port::Unix(path) => write!(f, "unix:{path}"),
         }
     }
 }
 
 impl Port {
-    /// Opens the way; `baud` is for serial ports.
-    ///
-    /// # Errors
-    /// What the operating system says.
-    pub fn open(&self, baud: u32) -> io::Result<Box<dyn Wire>> {
-        Ok(match self {
-            Port::Serial(name) => Box::new(SerialWire(SerialPort::open(name, baud)?)),
-            Port::Tcp(address) => {
-                let stream = TcpStream::connect(address)?;
-                stream.set_nodelay(true)?;
-                Box::new(stream)
-            }
-            #[cfg(unix)]
-            Port::Unix(path) => Box::new(std::os::unix::net::UnixStream::connect(path)?),
-            #[cfg(not(unix))]
-            Port::Unix(_) => return Err(io::Error::new(io::ErrorKind::Unsupported, "no Unix sockets here; use tcp:")),
-        })
-    }
-
     /// The serial ports of this machine.
     ///
     /// # Errors
@@ -74,15 +118,46 @@ impl Port {
     }
 }
 
-struct SerialWire(SerialPort);
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl Wire for SerialWire {
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.0.write_all(bytes)
+    #[test]
+    fn names_of_ports_are_read_and_written() {
+        let tcp = |host: &str| Port::Tcp { host: host.into(), number: 7000 };
+        let cases = [
+            ("tcp:robot-7.local:7000", tcp("robot-7.local")),
+            ("tcp:192.168.1.7:7000", tcp("192.168.1.7")),
+            ("tcp:[fe80::1%eth0]:7000", tcp("fe80::1%eth0")),
+            ("unix:/run/a:b", Port::Unix("/run/a:b".into())),
+            ("COM3", Port::Serial("COM3".into())),
+        ];
+        for (text, port) in cases {
+            assert_eq!(text.parse(), Ok(port.clone()));
+            assert_eq!(port.to_string(), text);
+        }
+        assert_eq!("tcp:::1:7000".parse(), Ok(tcp("::1")), "brackets may be left out");
     }
 
-    fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> io::Result<usize> {
-        self.0.set_read_timeout(patience)?;
-        read_within(self.0.read(buffer))
+    #[test]
+    fn wrong_names_of_ports_are_refused() {
+        let cases = [
+            ("", PortError::Empty),
+            ("unix:", PortError::NoPath),
+            ("tcp:", PortError::NoNumber),
+            ("tcp:robot", PortError::NoNumber),
+            ("tcp:robot:", PortError::NoNumber),
+            ("tcp:[::1]", PortError::NoNumber),
+            ("tcp::7000", PortError::NoHost),
+            ("tcp:robot:0", PortError::Number),
+            ("tcp:robot:65536", PortError::Number),
+            ("tcp:robot:-1", PortError::Number),
+            ("tcp:robot:http", PortError::Number),
+            ("tcp:a:b:7000", PortError::Address),
+            ("tcp:[robot]]:7000", PortError::Address),
+        ];
+        for (text, error) in cases {
+            assert_eq!(text.parse::<Port>(), Err(error), "{text}");
+        }
     }
 }

@@ -16,7 +16,7 @@ pub trait Wire: Send {
     /// What the operating system says; the wire is of no further use then.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits for bytes for at most about `patience` and tells how many have come; 0 if none.
+    /// Waits for bytes, about as long as `patience` at most, and puts them to the front of `buffer`. How many; 0 if none came.
     ///
     /// # Errors
     /// What the operating system says, or that the other side has gone; the wire is of no further use then.
@@ -43,10 +43,10 @@ impl<W: Wire + ?Sized> Wire for &mut W {
     }
 }
 
-/// What came of reading with a time limit; a signal ends the waiting early.
+/// The result of a read with a time limit as [`Wire::receive`] gives it: no bytes if the limit passed or a signal came.
 ///
 /// # Errors
-/// All but the limit's own; an end of the stream becomes [`io::ErrorKind::UnexpectedEof`].
+/// All others; an end of the stream becomes [`io::ErrorKind::UnexpectedEof`].
 pub fn read_within(read: io::Result<usize>) -> io::Result<usize> {
     match read {
         Ok(0) => Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the other side has gone")),
@@ -81,7 +81,7 @@ impl Wire for std::os::unix::net::UnixStream {
     }
 }
 
-/// A robot in this process: what is sent is served at once.
+/// A robot in this process; it answers what is sent before `send` returns.
 pub struct LocalRobot<F, S> {
     server: Server<F, S>,
     answers: VecDeque<u8>,

@@ -7,7 +7,7 @@ use core::fmt::Write;
 use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::percept::MAX_TARGETS;
-use grn_input::{InputError, Pair, Range};
+use grn_input::{InputError, Pair, Range, check_name};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
@@ -76,7 +76,7 @@ impl TryFrom<ScenarioFile> for Scenario {
 
     fn try_from(file: ScenarioFile) -> Result<Scenario, InputError> {
         let ScenarioFile { name, region: Pair(region), snapshots, morphogen, ring, targets, walls } = file;
-        limits::check_name(&name)?;
+        check_name("name", &name)?;
         let snapshots = limits::check_region(region, snapshots)?;
         let MorphogenTable { kernel, target_width, obstacle_width, level } = morphogen;
         let morphogen = Morphogen { kernel, target_width, obstacle_width, level };

@@ -10,15 +10,13 @@ pub const MAX_SNAPSHOTS: usize = 10_000;
 pub const MAX_POINTS: usize = 1000;
 /// The most points of all walls together: each of a swarm's senses and each node of a lattice asks for the nearest edge.
 pub const MAX_WALL_POINTS: usize = 20_000;
-/// The most bytes of a name.
-pub const MAX_NAME: usize = 1000;
 
 /// Spacing of the lattice on which patterns are judged, and its margin around the region, metres.
 pub const LATTICE: [f64; 2] = [0.2, 5.0];
 /// The most nodes of that lattice: 130 MB for what is known of each and of the 16 of a finer lattice in its place.
 const MAX_NODES: f64 = (1 << 22) as f64;
-/// The most nodes times snapshots: 8 bytes each, so 130 MB; a model is judged in about a tenth of a second.
-const MAX_NODE_SNAPSHOTS: f64 = (1 << 24) as f64;
+/// The most nodes times snapshots: 8 bytes each, so 160 MB; a model is judged in about a tenth of a second.
+const MAX_NODE_SNAPSHOTS: f64 = 2e7;
 /// The most samples of the walls' outlines, and the most of them times snapshots: 16 bytes each, so 70 MB.
 const MAX_SAMPLES: f64 = 20_000.0;
 const MAX_SAMPLE_SNAPSHOTS: f64 = (1 << 22) as f64;
@@ -42,20 +40,6 @@ pub const STEEPNESS: Range<f64> = Range::new(0.5, 1000.0, "per metre");
 fn table_entries(distance: f64, steepness: f64) -> f64 {
     let reach = distance + 20.0 / steepness;
     reach * reach * (10.0 * steepness).max(100.0)
-}
-
-pub(super) fn check_name(name: &str) -> Result<(), InputError> {
-    let fault = |expected: String| Err(InputError::new("name", format!("{name:?}"), expected));
-    match () {
-        () if !name.chars().any(char::is_alphanumeric) => fault("a name with letters or digits is needed".into()),
-        () if name.chars().any(char::is_control) => fault("a name is one line without control characters".into()),
-        () if name.len() > MAX_NAME => {
-            let shown: String = name.chars().take(20).collect();
-            let expected = format!("a name of {} bytes is too long; at most {MAX_NAME} are allowed", name.len());
-            Err(InputError::new("name", format!("\"{shown} …\""), expected))
-        }
-        () => Ok(()),
-    }
 }
 
 pub(super) fn check_region(region: [f64; 2], snapshots: i64) -> Result<usize, InputError> {
@@ -108,9 +92,10 @@ pub(super) fn check_ring(ring: &Ring, region: [f64; 2]) -> Result<(), InputError
     }
     let farthest = d_max.max(d_obstacle);
     if table_entries(farthest, steepness) > MAX_TABLE {
+        let or_gentler = if steepness > 10.0 { ", or this smaller" } else { "" };
         let expected = format!(
             "with distances up to {farthest:?} metres a table of {:.1e} entries is needed, of at most {MAX_TABLE:.1e}; \
-             make the ring's distances shorter, or this smaller",
+             make the ring's distances shorter{or_gentler}",
             table_entries(farthest, steepness)
         );
         return Err(InputError::new("ring.steepness", format!("{steepness:?}"), expected));

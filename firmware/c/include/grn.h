@@ -54,6 +54,18 @@
 // The bytes of a blob's identity.
 #define GRN_IDENTITY_BYTES 8
 
+// The most bytes of a packed message.
+#define GRN_PACKED_MESSAGE_BYTES 36
+
+// The smallest payload that a fragment fits.
+#define GRN_MIN_PAYLOAD_BYTES 2
+
+// The most bytes of a fragment.
+#define GRN_MAX_FRAGMENT_BYTES 38
+
+// The size of an assembler in units of 8 bytes, with some to spare for later versions.
+#define GRN_ASSEMBLER_WORDS 96
+
 // What became of a call. The numbers of released statuses never change; grn_status_text says what to do.
 enum GrnStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -112,6 +124,18 @@ enum GrnStatus
     GRN_STATUS_NO_RING = 41,
     // Time scale and integration step do not give a whole number of steps in a tick, or too many.
     GRN_STATUS_STEPS_PER_TICK = 42,
+    // The packed message does not fit the bytes that are there for it.
+    GRN_STATUS_BUFFER_TOO_SMALL = 50,
+    // There are more or fewer bytes than the packed message has.
+    GRN_STATUS_MESSAGE_LENGTH = 51,
+    // The packed message was damaged on the way.
+    GRN_STATUS_MESSAGE_DAMAGED = 52,
+    // The packed message is undamaged but of another version.
+    GRN_STATUS_MESSAGE_VERSION = 53,
+    // The radio's payload is smaller than GRN_MIN_PAYLOAD_BYTES.
+    GRN_STATUS_PAYLOAD_TOO_SMALL = 54,
+    // No fault: the fragment was taken in, and its message is not complete yet, or was before.
+    GRN_STATUS_MESSAGE_INCOMPLETE = 55,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -268,6 +292,15 @@ typedef struct GrnCommand {
     struct GrnMessage broadcast;
 } GrnCommand;
 
+// Puts the fragments of messages together that a radio with small payloads delivers: 768 bytes, 8-aligned, owned by the
+// caller.
+//
+// Zeros are an assembler that has heard nothing: static storage, or "GrnAssembler assembler = {0};".
+typedef struct GrnAssembler {
+    // Written by the library only.
+    uint64_t opaque[GRN_ASSEMBLER_WORDS];
+} GrnAssembler;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -333,6 +366,58 @@ const char *grn_version(void);
 // The format version of the blobs this library reads.
 uint8_t grn_blob_format_version(void);
 
+// Packs a message for a radio: 8 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
+//
+// `message`: for example the broadcast of a command.
+// `bytes`, `capacity`: receive the packed message; GRN_PACKED_MESSAGE_BYTES are always enough.
+// `length`: receives how many bytes there are; 0 if the message is refused.
+//
+// docs/messages.md describes the bytes. Radios with smaller payloads use grn_message_fragment.
+GrnStatus grn_message_write(const struct GrnMessage *message, uint8_t *bytes, size_t capacity, size_t *length);
+
+// Unpacks a message that grn_message_write packed.
+//
+// `bytes`, `length`: exactly the bytes of one packed message.
+// `message`: receives it, for the percept's "heard"; all zero if it is refused.
+//
+// Returns GRN_STATUS_OK, or why it is refused: damaged messages are to be dropped.
+GrnStatus grn_message_read(const uint8_t *bytes, size_t length, struct GrnMessage *message);
+
+// Cuts a message for a radio with small payloads, down to GRN_MIN_PAYLOAD_BYTES: gives one of its fragments.
+//
+// `message`: for example the broadcast of a command.
+// `number`: counts the messages that this robot sends; it may wrap around.
+// `payload`: how many bytes the radio carries at a time. The longest message takes 48 fragments of 2 bytes, 36 of 3,
+// 6 of 8, or 2 of 20 to 37.
+// `index`: which fragment, from 0.
+// `fragment`: receives it; room for `payload` bytes, of which no more than GRN_MAX_FRAGMENT_BYTES are used.
+// `length`: receives how many bytes it has; 0 if the message has fewer fragments.
+//
+// Fragments may be sent in any order and more than once.
+GrnStatus grn_message_fragment(const struct GrnMessage *message,
+                               uint8_t number,
+                               size_t payload,
+                               size_t index,
+                               uint8_t *fragment,
+                               size_t *length);
+
+// Takes in a fragment that was heard; gives a message if that completes it.
+//
+// `assembler`: what was heard so far.
+// `assembler_size`: sizeof(GrnAssembler), which tells whether this header fits the library.
+// `tick`: counts the control ticks, from anywhere; fragments that belong together and are long apart are told by it.
+// `fragment`, `length`: exactly the bytes that the radio delivered.
+// `message`: receives the message, for the percept's "heard"; all zero if none is complete.
+//
+// Returns GRN_STATUS_OK if a message is complete and undamaged, else GRN_STATUS_MESSAGE_INCOMPLETE or what is wrong.
+// Fragments may be lost, come twice, and overtake each other. Messages of eight robots are put together at a time.
+GrnStatus grn_assembler_receive(struct GrnAssembler *assembler,
+                                size_t assembler_size,
+                                uint32_t tick,
+                                const uint8_t *fragment,
+                                size_t length,
+                                struct GrnMessage *message);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -358,6 +443,7 @@ uint8_t grn_blob_format_version(void);
 #endif
 #ifdef GRN_ASSERT_LAYOUT
 GRN_ASSERT_LAYOUT(sizeof(GrnController) == 2048);
+GRN_ASSERT_LAYOUT(sizeof(GrnAssembler) == 768);
 GRN_ASSERT_LAYOUT(sizeof(GrnStatus) == 4 && sizeof(GrnNumber) == 4);
 GRN_ASSERT_LAYOUT(sizeof(GrnMillimetres) == 4);
 GRN_ASSERT_LAYOUT(offsetof(GrnMillimetres, x) == 0);

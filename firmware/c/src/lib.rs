@@ -19,10 +19,12 @@ extern crate std;
 pub mod layout;
 mod message;
 mod pointer;
+mod radio;
 mod status;
 mod storage;
 
 pub use message::*;
+pub use radio::*;
 pub use status::GrnStatus;
 pub use storage::{GRN_CONTROLLER_WORDS, GrnController, GrnNumber};
 

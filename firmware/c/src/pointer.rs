@@ -41,7 +41,16 @@ pub unsafe fn write<T>(pointer: *mut T, value: T) -> Result<(), GrnStatus> {
     Ok(())
 }
 
-/// The bytes of a blob; of more than any blob can have, as many as show that it is too long.
+/// # Safety
+/// Null, or there is room for these bytes, which nobody else uses now.
+pub unsafe fn copy(bytes: &[u8], pointer: *mut u8) -> Result<(), GrnStatus> {
+    checked(pointer)?;
+    // SAFETY: not null; the caller vouches for the room, and nobody else uses it, so that it is not that of `bytes`.
+    unsafe { pointer.copy_from_nonoverlapping(bytes.as_ptr(), bytes.len()) };
+    Ok(())
+}
+
+/// The bytes of a blob or a message; of more than any blob can have, as many as show that it is too long.
 ///
 /// # Safety
 /// Null, or there are `length` bytes, which nobody writes during `'a`.

@@ -62,10 +62,22 @@ pub enum GrnStatus {
     NoRing = 41,
     /// Time scale and integration step do not give a whole number of steps in a tick, or too many.
     StepsPerTick = 42,
+    /// The packed message does not fit the bytes that are there for it.
+    BufferTooSmall = 50,
+    /// There are more or fewer bytes than the packed message has.
+    MessageLength = 51,
+    /// The packed message was damaged on the way.
+    MessageDamaged = 52,
+    /// The packed message is undamaged but of another version.
+    MessageVersion = 53,
+    /// The radio's payload is smaller than GRN_MIN_PAYLOAD_BYTES.
+    PayloadTooSmall = 54,
+    /// No fault: the fragment was taken in, and its message is not complete yet, or was before.
+    MessageIncomplete = 55,
 }
 
 impl GrnStatus {
-    const TEXTS: [(Self, &CStr); 26] = [
+    const TEXTS: [(Self, &CStr); 32] = [
         (Self::Ok, c"done"),
         (Self::NullPointer, c"a pointer is null: pass the address of an object"),
         (
@@ -119,6 +131,12 @@ impl GrnStatus {
             Self::StepsPerTick,
             c"time_scale and step do not give 1 to 64 whole steps in a tick: write the blob with others",
         ),
+        (Self::BufferTooSmall, c"the packed message does not fit: give room for GRN_PACKED_MESSAGE_BYTES"),
+        (Self::MessageLength, c"not the length of a packed message: give exactly the bytes of one message"),
+        (Self::MessageDamaged, c"the message was damaged on the way: drop it"),
+        (Self::MessageVersion, c"the message has another version: use one release of this library in the whole swarm"),
+        (Self::PayloadTooSmall, c"the radio's payload is too small: give at least GRN_MIN_PAYLOAD_BYTES"),
+        (Self::MessageIncomplete, c"no fault: the message is complete only when further fragments have come"),
     ];
 
     /// The status of a call that does `work`.

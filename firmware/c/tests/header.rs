@@ -1,12 +1,13 @@
 //! The committed header is the one that the sources give.
 
-use grn_c::GrnController;
 use grn_c::layout::{LAYOUTS, Layout};
+use grn_c::{GrnAssembler, GrnController};
 use std::env;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
+/// Types come in this order. Functions of other modules are found through lib.rs.
 const SOURCES: [&str; 4] = ["status.rs", "storage.rs", "message.rs", "lib.rs"];
 const END: &str = "#endif  /* GRN_H */\n";
 
@@ -38,6 +39,7 @@ fn assertions() -> String {
     );
     let mut assert = |condition: &str| writeln!(text, "GRN_ASSERT_LAYOUT({condition});").expect("a string takes text");
     assert(&format!("sizeof(GrnController) == {}", size_of::<GrnController>()));
+    assert(&format!("sizeof(GrnAssembler) == {}", size_of::<GrnAssembler>()));
     assert("sizeof(GrnStatus) == 4 && sizeof(GrnNumber) == 4");
     for Layout { name, size, fields } in LAYOUTS {
         assert(&format!("sizeof({name}) == {size}"));

@@ -1,4 +1,4 @@
-//! The robot: percept → controller → wheel command, the radio messages between robots, the link to a host, and the slots
+//! The robot: percept → controller → wheel command, the radio messages between robots and their bytes, the link to a host, and the slots
 //! that blobs are flashed to.
 //!
 //! Everything that crosses the controller's border is made of integers in stated units, so that a percept can be
@@ -16,6 +16,7 @@ mod neighbours;
 mod obstacles;
 pub mod percept;
 mod position;
+pub mod radio;
 pub mod slots;
 
 pub use controller::{Controller, LoadError};

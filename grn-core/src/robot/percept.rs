@@ -100,13 +100,16 @@ impl Percept {
     /// [`PerceptError`].
     pub fn check(&self) -> Result<(), PerceptError> {
         let Percept { position, heading, .. } = *self;
-        if !position.iter().all(|coordinate| (-MAX_POSITION..=MAX_POSITION).contains(coordinate)) {
+        let far = |coordinate: i32| coordinate.unsigned_abs() > MAX_POSITION as u32;
+        let [east, north] = position;
+        if far(east) || far(north) {
             return Err(PerceptError::Position { position });
         }
         const SHORTEST: u32 = (HEADING_UNIT - HEADING_TOLERANCE) as u32;
         const LONGEST: u32 = (HEADING_UNIT + HEADING_TOLERANCE) as u32;
-        let [x, y] = heading.map(|component| u32::from(component.unsigned_abs()));
-        if !(SHORTEST * SHORTEST..=LONGEST * LONGEST).contains(&(x * x + y * y)) {
+        let square = |component: i16| (i32::from(component) * i32::from(component)) as u32;
+        let [x, y] = heading;
+        if !(SHORTEST * SHORTEST..=LONGEST * LONGEST).contains(&(square(x) + square(y))) {
             return Err(PerceptError::Heading { heading });
         }
         Ok(())

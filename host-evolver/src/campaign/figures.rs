@@ -1,7 +1,8 @@
 //! The pictures of a campaign.
 
 use super::plan::{Plan, PlannedScenario, slug};
-use super::tables::{Measure, RunRow, Tables, TransferRow};
+use super::rows::{Measure, RunRow, TransferRow};
+use super::tables::Tables;
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
@@ -42,7 +43,10 @@ pub(super) fn draw(
                 format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
             };
             let front = unit.front(plan, campaign)?;
-            pictures.add(&name("pareto"), figures::pareto(&front, &[], &planned.scenario.ring()));
+            pictures.add(
+                &name("pareto"),
+                figures::front(&planned_method.method.objectives(), &front, &[], &planned.scenario.ring()),
+            );
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
             pictures.add(&name("tree"), Ok(figures::tree(&network)));
             pictures.add(&name("grn"), figures::grn(&network));

@@ -37,8 +37,7 @@ impl Manifest {
             files,
         };
         let manifest = if path.exists() {
-            files::check_version(&path)?;
-            let found: Manifest = files::read_json(&path)?;
+            let found = read(&path)?;
             if found.seeds > plan.seeds {
                 let (there, now) = (found.seeds, plan.seeds);
                 let fault = format!(
@@ -77,7 +76,7 @@ impl Manifest {
     /// No campaign, one that is not finished, or a file that was changed.
     pub(super) fn check_finished(folder: &Path) -> Result<(), FileError> {
         let path = folder.join(MANIFEST);
-        let found: Manifest = files::read_json(&path)?;
+        let found = read(&path)?;
         if !found.finished {
             return Err(FileError::new(path, "this campaign is not finished; run it to its end"));
         }
@@ -86,4 +85,16 @@ impl Manifest {
             None => Ok(()),
         }
     }
+}
+
+/// Without it nobody knows which tables and figures are ours, so the folder is left to the user; its runs are still good.
+fn read(path: &Path) -> Result<Manifest, FileError> {
+    let manifest = files::check_version(path).and_then(|()| files::read_json(path));
+    manifest.map_err(|error| {
+        if error.is_damage() {
+            FileError::damaged(path, "choose another folder with --out and take the runs over with --merge")
+        } else {
+            error
+        }
+    })
 }

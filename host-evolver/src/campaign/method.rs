@@ -16,10 +16,10 @@ pub enum Method {
     Mogp {
         /// Motifs to build with.
         motifs: MotifSet,
-        /// Generations of DE that an individual gets, if not one.
+        /// Generations of DE for each individual; one if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         de_generations: Option<usize>,
-        /// What is minimised, if not the paper's two.
+        /// What is minimised; nodes and f2 if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objectives: Option<Objectives>,
     },
@@ -57,15 +57,9 @@ impl Method {
         }
     }
 
-    /// Whether it can work with that budget; if not, what is wrong.
-    pub(super) fn check(&self, evaluations: usize) -> Result<(), String> {
-        match self.settings(evaluations, 1) {
-            Some(settings) => settings.check().map_err(|error| error.to_string()),
-            None if evaluations < eh_grn::POPULATION => {
-                Err(format!("evaluations = {evaluations}: one generation takes {}", eh_grn::POPULATION))
-            }
-            None => Ok(()),
-        }
+    /// The evaluations that its first generation takes.
+    pub(super) fn least_evaluations(&self) -> usize {
+        self.settings(0, 1).map_or(eh_grn::POPULATION, |settings| settings.least_evaluations())
     }
 
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.

@@ -8,6 +8,8 @@ mod figures;
 mod manifest;
 mod method;
 mod plan;
+mod plan_file;
+mod rows;
 mod tables;
 mod trial;
 mod unit;
@@ -15,7 +17,8 @@ mod vary;
 
 pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
-pub use tables::{Comparison, Measure, RunRow, Summary, Tables, TransferRow};
+pub use rows::{Comparison, Measure, RunRow, Summary, TransferRow};
+pub use tables::Tables;
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 
@@ -31,7 +34,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use trial::Group;
 
-/// One part of a campaign of which there are several: number 2 of 3 does runs 2, 5, 8, ….
+/// One of several parts of a campaign, for several machines: part 2 of 3 does runs 2, 5, 8, ….
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -86,7 +89,9 @@ impl fmt::Display for Stage {
 
 /// Hears how a campaign goes.
 pub trait Listener: Sync {
-    /// A unit is done that was worth so many evaluations of f2.
+    /// A unit was there already; it is worth this many evaluations of f2.
+    fn found(&self, evaluations: u64);
+    /// A unit is done; it cost this many evaluations of f2.
     fn done(&self, evaluations: u64);
     /// Something that the user should know.
     fn notice(&self, text: &str);
@@ -167,6 +172,9 @@ impl Campaign {
     /// A unit that was made from something else, or a file that cannot be read or written.
     pub fn run(&self, shard: Shard, stop: &AtomicBool, listener: &dyn Listener) -> Result<Stage, FileError> {
         let units = Unit::all(&self.plan);
+        for name in self.runs_of_others()? {
+            listener.notice(&format!("{name}: of another state of the campaign: kept, and in no table"));
+        }
         // What is refused is refused before the first run.
         let found: Vec<Found> =
             units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
@@ -196,6 +204,26 @@ impl Campaign {
         contents.extend(tables.contents());
         self.manifest.publish(self.folder(), &contents)?;
         Ok(Stage::Done(Box::new(tables)))
+    }
+
+    /// Folders of runs of scenarios and methods that the campaign has no longer. They took long, so they are kept.
+    fn runs_of_others(&self) -> Result<Vec<String>, FileError> {
+        let runs = self.folder().join("runs");
+        if !runs.exists() {
+            return Ok(Vec::new());
+        }
+        let ours: Vec<PathBuf> = Unit::all(&self.plan).iter().map(|unit| unit.folder(&self.plan)).collect();
+        let mut others = Vec::new();
+        for (scenario, entry) in files::entries(&runs)? {
+            let methods = if entry.path().is_dir() { files::entries(&entry.path())? } else { Vec::new() };
+            for (method, _) in methods {
+                let folder = Path::new("runs").join(&scenario).join(method);
+                if !ours.iter().any(|ours| ours.starts_with(&folder)) {
+                    others.push(self.folder().join(folder).display().to_string());
+                }
+            }
+        }
+        Ok(others)
     }
 
     /// The trials by group and world; `None` if stopped.
@@ -228,7 +256,10 @@ impl Campaign {
         stop: &AtomicBool,
         listener: &dyn Listener,
     ) -> Result<bool, FileError> {
-        if *found != Found::Whole {
+        let worth = self.plan.scenarios[unit.scenario].evaluations as u64;
+        if *found == Found::Whole {
+            listener.found(worth);
+        } else {
             if stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
@@ -240,8 +271,8 @@ impl Campaign {
             if !unit.run(&self.plan, self.folder(), world, stop)? {
                 return Ok(false);
             }
+            listener.done(worth);
         }
-        listener.done(self.plan.scenarios[unit.scenario].evaluations as u64);
         Ok(true)
     }
 

@@ -1,8 +1,9 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, output, this_command};
+use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
-use indicatif::{ProgressBar, ProgressStyle};
+use grn_input::file_name;
+use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -14,11 +15,12 @@ const SELDOM: Duration = Duration::from_secs(30);
 pub struct Arguments {
     /// The campaign: scenarios, methods, models, transfers, seeds.
     file: PathBuf,
-    /// Folder of the campaign; what is there already is not done again [default: runs/NAME].
+    /// Folder of the campaign, new, empty, or with this campaign, which may have got more seeds: runs that are there whole are
+    /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to work with; the results do not depend on it [default: all cores].
-    #[arg(long)]
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
     #[arg(long, value_name = "I/N")]
@@ -30,7 +32,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let plan = Plan::load(&arguments.file)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(&plan.name));
+    let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
     let campaign = Campaign::begin(plan, &folder, &this_command())?;
     let progress = Progress::new(campaign.work());
@@ -41,7 +43,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, NonZeroUsize::get))
+        .build()
+        .map_err(no_threads)?;
     let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
@@ -64,15 +69,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 struct Progress {
     bar: ProgressBar,
+    found: progress::Found,
     told: std::sync::Mutex<Instant>,
 }
 
 impl Progress {
     fn new(work: u64) -> Progress {
-        let style = ProgressStyle::with_template("campaign {bar:40} {percent} % · {elapsed} · {eta} left");
-        let bar = ProgressBar::new(work).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let found = progress::Found::default();
+        let style = progress::style("campaign {bar:40} {percent} % · {elapsed} · {left}", &found);
+        let bar = ProgressBar::new(work).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(500));
-        Progress { bar, told: std::sync::Mutex::new(Instant::now()) }
+        Progress { bar, found, told: std::sync::Mutex::new(Instant::now()) }
     }
 }
 
@@ -81,59 +88,82 @@ impl Listener for Progress {
         self.bar.suspend(|| output::notice(text));
     }
 
+    fn found(&self, evaluations: u64) {
+        self.found.add(evaluations);
+        self.bar.inc(evaluations);
+    }
+
     fn done(&self, evaluations: u64) {
         self.bar.inc(evaluations);
         let mut told = self.told.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if self.bar.is_hidden() && told.elapsed() > SELDOM {
             *told = Instant::now();
-            let share = 100 * self.bar.position() / self.bar.length().unwrap_or(1).max(1);
-            output::notice(format_args!("{share} %, {} s left", self.bar.eta().as_secs()));
+            let (position, total) = (self.bar.position(), self.bar.length().unwrap_or(1).max(1));
+            let left = progress::words(self.found.left(self.bar.elapsed(), position, total));
+            output::notice(format_args!("{} %, {left}", 100 * position / total));
         }
     }
 }
 
 /// The tables as a person reads them.
 fn text(tables: &Tables) -> String {
-    let mut text = String::new();
     let number = |measure: Measure, value: f64| match measure {
         Measure::BestNodes | Measure::KneeNodes => format!("{value:.0}"),
         _ => format!("{value:.5}"),
     };
+    let mut text = String::new();
     for measure in Measure::ALL {
-        text += &format!(
-            "{}\n{:<28}{:<26}{:>10}  {:>27}\n",
-            measure.words(),
-            "scenario",
-            "method",
-            "feasible",
-            "median (quartiles)"
-        );
-        for row in tables.summaries.iter().filter(|row| row.measure == measure) {
+        let rows = tables.summaries.iter().filter(|row| row.measure == measure).map(|row| {
+            let feasible = format!("{} of {}", row.feasible, row.runs);
             let quartiles = row.quartile_words(|value| number(measure, value));
-            let feasible = format!("{}/{}", row.feasible, row.runs);
-            text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
-        }
+            [row.scenario.clone(), row.method.clone(), feasible, quartiles]
+        });
+        text += &format!("{}\n", measure.words());
+        text += &columns(["scenario", "method", "feasible", "median (quartiles)"], rows);
         text.push('\n');
     }
-    text += &format!(
-        "{:<28}{:<14}{:<52}{:>10}{:>8}\n",
-        "scenario", "measure", "better than the baseline?", "p (Holm)", "A12"
-    );
-    for row in &tables.comparisons {
+    let rows = tables.comparisons.iter().map(|row| {
         let pair = format!("{} / {}", row.method, row.baseline);
-        text += &format!(
-            "{:<28}{:<14}{pair:<52}{:>10.1e}{:>8.3}\n",
-            row.scenario,
-            row.measure.short(),
-            row.p_holm,
-            row.a12
-        );
-    }
+        let (p, a12) = (format!("{:.1e}", row.p_holm), format!("{:.3}", row.a12));
+        [row.scenario.clone(), row.measure.short().into(), pair, p, a12]
+    });
+    text += &columns(["scenario", "measure", "better than the baseline?", "p (Holm)", "A12"], rows);
     if !tables.transfers.is_empty() {
-        text += &format!("\n{:<28}{:<28}{:<26}{}\n", "tried in", "model", "evolved for", "success (95 % interval)");
-    }
-    for row in &tables.transfers {
-        text += &format!("{:<28}{:<28}{:<26}{}\n", row.transfer, row.method, row.from, row.rate_words());
+        let rows = tables.transfers.iter();
+        let rows = rows.map(|row| [row.transfer.clone(), row.method.clone(), row.from.clone(), row.rate_words()]);
+        text.push('\n');
+        text += &columns(["tried in", "model", "evolved for", "success (95 % interval)"], rows);
     }
     text
+}
+
+/// A table whose columns are as wide as the longest of their cells.
+fn columns<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let rows: Vec<[String; N]> = std::iter::once(header.map(String::from)).chain(rows).collect();
+    let letters = |cell: &String| cell.chars().count();
+    let mut widths = [0; N];
+    for row in &rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = letters(cell).max(*width);
+        }
+    }
+    let line = |row: &[String; N]| {
+        let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}  "));
+        format!("{}\n", cells.collect::<String>().trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_do_not_run_into_the_next_column() {
+        let name = "channel with a name that is longer than any column was";
+        let rows = [[name.to_owned(), "MOGP".into()], ["σ".into(), "EH-GRN".into()]];
+        let table = columns(["scenario", "method"], rows.into_iter());
+        let method = |line: &str| line.chars().skip(name.len() + 2).collect::<String>();
+        assert_eq!(table.lines().map(method).collect::<Vec<_>>(), ["method", "MOGP", "EH-GRN"]);
+    }
 }

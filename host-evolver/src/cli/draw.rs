@@ -6,7 +6,7 @@ use crate::figures;
 use crate::files::{self, read_blob};
 use firmware_sim::scenario::Scenario;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -14,15 +14,50 @@ pub struct Arguments {
     blob: PathBuf,
     /// The world.
     scenario: PathBuf,
-    /// Where to write the picture [default: BLOB-SCENARIO.svg here; with --json, none].
-    #[arg(long, value_name = "FILE.svg")]
+    /// Where to write the picture: FILE.svg, or FILE.png with 300 pixels an inch [default: BLOB-SCENARIO.svg here; with
+    /// --json, none].
+    #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Print what was drawn, per snapshot, as JSON.
     #[arg(long)]
     json: bool,
 }
 
+/// How a picture is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+}
+
+/// Of a picture in a journal.
+const PIXELS_PER_INCH: f32 = 300.0;
+
+impl Format {
+    /// By the ending of the file's name; without one, as of a device or a pipe, it is SVG.
+    fn of(path: &Path) -> Result<Format, Failure> {
+        let Some(ending) = path.extension() else { return Ok(Format::Svg) };
+        match ending.to_string_lossy().to_lowercase().as_str() {
+            "svg" => Ok(Format::Svg),
+            "png" => Ok(Format::Png),
+            _ => Err(Failure::Input(format!(
+                "--out {}: pictures are written as .svg or .png; name it {}, and convert that",
+                path.display(),
+                path.with_extension("svg").display()
+            ))),
+        }
+    }
+
+    fn encode(self, svg: String) -> Result<Vec<u8>, Failure> {
+        match self {
+            Format::Svg => Ok(svg.into_bytes()),
+            Format::Png => Ok(grn_figures::png(&svg, PIXELS_PER_INCH)?),
+        }
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    let format = arguments.out.as_deref().map_or(Ok(Format::Svg), Format::of)?;
     let blob = read_blob(&arguments.blob)?;
     let world = World::new(Scenario::load(&arguments.scenario)?);
     let level = f64::from(blob.level_fraction);
@@ -35,13 +70,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     };
     let default = || {
         let stem = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        PathBuf::from(format!("{}-{}.svg", stem(&arguments.blob), stem(&arguments.scenario)))
+        let name = format!("{}-{}", stem(&arguments.blob), stem(&arguments.scenario));
+        PathBuf::from(grn_input::file_name(&name) + ".svg")
     };
     let out = arguments.out.clone().or_else(|| (!arguments.json).then(default));
     if let Some(out) = &out {
         files::probe(out)?;
         let svg = figures::pattern(&world, &model).map_err(about(arguments.scenario.display()))?;
-        files::write(out, svg)?;
+        files::write(out, format.encode(svg)?)?;
     }
     if arguments.json {
         output::product_json(&as_json(&world, &model))?;

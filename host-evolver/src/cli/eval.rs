@@ -6,9 +6,14 @@ use crate::files::read_blob;
 use grn_core::blob::Blob;
 use grn_core::network::Network;
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 use std::path::PathBuf;
 use std::str::FromStr;
+
+/// The most bytes of a line.
+const LONGEST_LINE: u64 = 1000;
+/// The largest input: Q8.24 holds numbers below 128, and robots have x1 up to 4 and x2 up to 1.
+const LARGEST: f64 = 100.0;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -40,11 +45,21 @@ impl FromStr for EvalNumber {
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
     let evaluate = evaluator(&blob, arguments.number);
-    for (index, line) in std::io::stdin().lock().lines().enumerate() {
-        let line = line.map_err(about("standard input"))?;
-        let [x1, x2] = parse(&line).ok_or_else(|| {
-            let place = format!("standard input, line {}", index + 1);
-            Failure::Input(format!("{place}: {line:?} is not two finite numbers like 0.5,0.25"))
+    let mut input = std::io::stdin().lock();
+    for number in 1.. {
+        let mut line = Vec::new();
+        let read = (&mut input).take(LONGEST_LINE).read_until(b'\n', &mut line).map_err(about("standard input"))?;
+        if read == 0 {
+            break;
+        }
+        let line = String::from_utf8_lossy(&line);
+        let line = if number == 1 { line.trim_start_matches('\u{feff}') } else { &line };
+        let line = line.trim_end_matches(['\r', '\n']);
+        let [x1, x2] = parse(line).ok_or_else(|| {
+            let shown: String = line.chars().take(60).collect();
+            Failure::Input(format!(
+                "standard input, line {number}: {shown:?} is not two numbers from -{LARGEST} to {LARGEST} like 0.5,0.25"
+            ))
         })?;
         if output::product(evaluate(x1, x2))? == Reader::Gone {
             break;
@@ -55,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 fn parse(line: &str) -> Option<[f64; 2]> {
     let (x1, x2) = line.split_once(',')?;
-    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.abs() <= LARGEST);
     Some([number(x1)?, number(x2)?])
 }
 

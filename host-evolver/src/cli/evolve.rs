@@ -1,9 +1,9 @@
 //! `grn evolve`.
 
-use super::simulate::{self, DEFAULT_ROBOTS, table, usual_config, watched};
-use super::{Answer, Failure, about, interrupt, output, this_command};
-use crate::evaluation::World;
-use crate::evolve::{Advance, FrontMember, Objectives, Search, Settings};
+use super::simulate::{self, DEFAULT_ROBOTS, check_swarm, table, usual_config, watched};
+use super::{Answer, Failure, about, interrupt, no_threads, options, output, progress, this_command};
+use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
+use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
 use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::notation::Digits;
@@ -12,7 +12,8 @@ use crate::run::{Manifest, Results, RunFolder};
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
-use indicatif::{ProgressBar, ProgressStyle};
+use grn_input::{Range, file_name};
+use indicatif::ProgressBar;
 use std::io::ErrorKind;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -26,11 +27,11 @@ pub struct Arguments {
     /// Seed of everything random; equal seeds give equal fronts.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Threads to work with; the result does not depend on it [default: all cores].
-    #[arg(long)]
+    /// Threads to work with, up to 8 a core; the result does not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads)]
     threads: Option<NonZeroUsize>,
-    /// Budget: evaluations of f2.
-    #[arg(long, default_value_t = Settings::default().evaluations)]
+    /// Budget: evaluations of f2; with --resume it may be larger than before.
+    #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
     #[arg(long, default_value = "all")]
@@ -39,12 +40,12 @@ pub struct Arguments {
     #[arg(long, default_value_t = Objectives::paper(), value_name = "NAMES")]
     objectives: Objectives,
     /// World metres per scenario metre of the blobs.
-    #[arg(long, default_value_t = DEFAULT_SCALE)]
+    #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale)]
     scale: f32,
-    /// Folder of the run [default: runs/SCENARIO-seed-N, or the next free name].
+    /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Continue the run in the folder.
+    /// Continue the run in the folder, to the same files as if it had never stopped.
     #[arg(long)]
     resume: bool,
 }
@@ -67,9 +68,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         objectives: arguments.objectives.clone(),
         ..Settings::default()
     };
-    if !(0.01..=10.0).contains(&arguments.scale) {
-        return Err(Failure::Input(format!("--scale {}: a number from 0.01 to 10 is needed", arguments.scale)));
-    }
+    let config = usual_config(arguments.scale, DEFAULT_ROBOTS);
+    check_swarm(&arguments.scenario, &scenario, &config)?;
     let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale);
     let stop = interrupt::watch()?;
     // Settings are checked before anything is written.
@@ -87,23 +87,21 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let front = search.front();
     let is_feasible = front.iter().all(|member| member.is_feasible());
     let Results { mut contents, knee, not_drawn } = run.results(&search, &world, arguments.scale)?;
-    run.publish(&contents, !is_feasible)?;
+    run.add(&contents)?;
     not_drawn.iter().for_each(output::notice);
     output::report(front_table(&settings.objectives, &front));
     output::report(format!("\nresults in {}\n", folder.display()));
     if !is_feasible {
-        output::report(
-            "infeasible: no model encloses every target everywhere with room to the walls; try more --evaluations",
-        );
+        run.finish(&contents)?;
+        output::report(infeasible(&world, &front));
         return Ok(Answer::No);
     }
-    let config = usual_config(&knee, DEFAULT_ROBOTS);
     let robots = config.robots;
-    let simulation = watched(&knee, &scenario, config, NumberType::F32, &stop)?;
+    let simulation = watched(&run.path("knee.grn"), &knee, &scenario, config, NumberType::F32, &stop)?;
     for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
         contents.insert(format!("simulation/{name}"), content);
     }
-    run.publish(&contents, true)?;
+    run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
@@ -116,7 +114,7 @@ fn folder(arguments: &Arguments, name: &str) -> Result<PathBuf, Failure> {
         return Ok(out.clone());
     }
     let runs = Path::new("runs");
-    let first = runs.join(format!("{name}-seed-{}", arguments.seed));
+    let first = runs.join(format!("{}-seed-{}", file_name(name), arguments.seed));
     if arguments.resume {
         return Ok(first);
     }
@@ -136,6 +134,41 @@ fn folder(arguments: &Arguments, name: &str) -> Result<PathBuf, Failure> {
     }
 }
 
+fn evaluations(text: &str) -> Result<usize, String> {
+    options::within(text, &Range::new(1, MOST_EVALUATIONS, "(a whole one)"))
+}
+
+/// Why no model is good enough, by the best one.
+fn infeasible(world: &World, front: &[FrontMember]) -> String {
+    let best = front.iter().min_by(|a, b| a.violation.total_cmp(&b.violation));
+    let model = best.and_then(|best| Model::new(&best.network, world.scenario().morphogen().level).ok());
+    let mut tracer = Tracer::new(world);
+    let lost = |(snapshot, contours): (&Snapshot, Contours)| {
+        let target = contours.enclosed.iter().position(|enclosed| !enclosed)?;
+        snapshot.targets.get(target).copied()
+    };
+    let lost: Vec<_> = match &model {
+        Some(model) => tracer.trace_all(model).map(lost).enumerate().collect(),
+        None => Vec::new(),
+    };
+    let mut places = lost.iter().filter_map(|(snapshot, place)| Some((snapshot, (*place)?)));
+    let reason = match (places.next(), model) {
+        (Some((snapshot, place)), _) => format!(
+            "the best one loses a target at {} of {} snapshots, first at snapshot {snapshot} at [{:.1}, {:.1}]",
+            places.count() + 1,
+            lost.len(),
+            place.x,
+            place.y
+        ),
+        (None, Some(_)) => "the ring of the best one comes too near to a wall".into(),
+        (None, None) => "the best one has no pattern".into(),
+    };
+    format!(
+        "infeasible: no model encloses every target everywhere with room to the walls; {reason}; try more --evaluations, or \
+         make room there"
+    )
+}
+
 fn search_on(
     search: &mut Search<'_>,
     run: &RunFolder,
@@ -143,10 +176,14 @@ fn search_on(
     stop: &AtomicBool,
     folder: &Path,
 ) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build()?;
-    let style = ProgressStyle::with_template("evolving {bar:40} {pos}/{len} evaluations · {msg} · {eta} left");
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.map_or(0, NonZeroUsize::get))
+        .build()
+        .map_err(no_threads)?;
+    let found = progress::Found::default();
+    found.add(search.state().evaluations as u64);
     let bar = ProgressBar::new(search.settings().evaluations as u64)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        .with_style(progress::style("evolving {bar:40} {pos}/{len} evaluations · {msg} · {left}", &found));
     let each = search.settings().evaluations_each() as u64;
     let best = Mutex::new(search.state().history.last().and_then(|milestone| milestone.best_f2));
     bar.set_message(best_text(*best.lock().unwrap_or_else(|poisoned| poisoned.into_inner())));

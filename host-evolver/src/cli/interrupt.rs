@@ -1,10 +1,19 @@
-//! Ctrl-C and its relatives: the first asks for an orderly stop, the second ends the process.
+//! Ctrl-C and its relatives: the first asks for an orderly stop, the second ends the process, and so does [`PATIENCE`].
 
+use super::output;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+/// How long an orderly stop may take. Work that does not look whether it is to stop, such as reading a large campaign, is
+/// ended then; every file is written whole or not at all, so nothing is damaged.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// How often it is looked whether a stop is asked for.
+const GLANCE: Duration = Duration::from_millis(200);
 
 /// The exit code of a command that was interrupted.
 pub const CODE: u8 = 130;
@@ -23,7 +32,19 @@ pub fn watch() -> io::Result<Arc<AtomicBool>> {
     if !is_ignored(signal_hook::consts::SIGHUP) {
         flag::register(signal_hook::consts::SIGHUP, Arc::clone(&asked))?;
     }
+    let seen = Arc::clone(&asked);
+    thread::Builder::new().name("patience".into()).spawn(move || end_in_time(&seen))?;
     Ok(asked)
+}
+
+/// Waits until a stop is asked for, and ends the process if it is still there after [`PATIENCE`].
+fn end_in_time(asked: &AtomicBool) {
+    while !asked.load(Ordering::Relaxed) {
+        thread::sleep(GLANCE);
+    }
+    thread::sleep(PATIENCE);
+    output::notice("grn: interrupted. What was under way is not kept; go on with the same command");
+    std::process::exit(i32::from(CODE));
 }
 
 /// Whether who started this process has it ignore a signal, as `nohup` does. Where this cannot be read, nobody has.

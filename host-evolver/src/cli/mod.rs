@@ -1,16 +1,21 @@
 //! The command line: one file a subcommand.
 
 mod campaign;
+mod connection;
 mod draw;
 mod eval;
 mod evolve;
 mod flash;
 mod interrupt;
+mod options;
 mod output;
+mod progress;
 mod robots;
 mod scatter;
 mod show;
 mod simulate;
+mod snippet;
+mod trial;
 
 use crate::files;
 use clap::{Parser, Subcommand};
@@ -28,7 +33,7 @@ struct Cli {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
-                          3 the system failed (disk full); 130 interrupted.";
+                          3 the system failed (disk full, broken device, no threads); 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -46,6 +51,10 @@ enum Command {
     Flash(flash::Arguments),
     /// List the robots that answer on the given ports.
     Robots(robots::Arguments),
+    /// Keep the blob that is in charge of a robot: end its trial.
+    Confirm(trial::Arguments),
+    /// Take the blob out of charge of a robot and put the one before it back.
+    Rollback(trial::Arguments),
     /// Read `x1,x2` lines from standard input and print the steady state M of each.
     Eval(eval::Arguments),
     /// Draw a blob's pattern at each snapshot of a scenario.
@@ -83,6 +92,9 @@ impl Failure {
             of_system |= error.downcast_ref().is_some_and(files::is_fault_of_system);
             link = error.source();
         }
+        if let Some(snippet) = snippet::of(error) {
+            message = format!("{message}\n{snippet}");
+        }
         if of_system { Failure::System(message) } else { Failure::Input(message) }
     }
 
@@ -110,6 +122,11 @@ fn this_command() -> String {
 /// Prefixes an error that does not know which file it is about.
 fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
     move |error| Failure::new(error.into().as_ref()).about(place)
+}
+
+/// That the system gives no threads is not the fault of who asks for them.
+fn no_threads(error: impl fmt::Display) -> Failure {
+    Failure::System(format!("threads cannot be started: {error}"))
 }
 
 /// Runs the command line of this process.
@@ -155,6 +172,8 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Scatter(arguments) => scatter::run(arguments),
         Command::Flash(arguments) => flash::run(arguments),
         Command::Robots(arguments) => robots::run(arguments),
+        Command::Confirm(arguments) => trial::run(arguments, trial::End::Confirm),
+        Command::Rollback(arguments) => trial::run(arguments, trial::End::RollBack),
         Command::Show(arguments) => show::run(arguments),
         Command::Eval(arguments) => eval::run(arguments),
         Command::Draw(arguments) => draw::run(arguments),

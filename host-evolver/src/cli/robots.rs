@@ -1,10 +1,13 @@
 //! `grn robots`.
 
-use super::flash::DEFAULT_BAUD;
+use super::connection::{ConnectionError, DEFAULT_BAUD, connect, described, failed};
 use super::{Answer, Failure, output};
 use grn_core::robot::link::message::{About, RobotStatus, Status};
-use grn_core::robot::slots::Stage;
-use grn_link::{Client, LinkError, Patience, Port, Wire};
+use grn_link::{Patience, Port};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
 use std::time::Duration;
 
 #[derive(clap::Args)]
@@ -12,59 +15,83 @@ pub struct Arguments {
     /// Where to ask: serial ports, tcp:HOST:PORT, unix:PATH [default: all serial ports].
     ports: Vec<Port>,
     /// Baud rate of serial ports.
-    #[arg(long, default_value_t = DEFAULT_BAUD)]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
     baud: u32,
 }
 
 /// A port without a robot must not hold the list up.
 const PATIENCE: Patience =
     Patience { response: Duration::from_millis(200), erasure: Duration::from_millis(200), tries: 3 };
+/// How long connecting to one of many may take.
+const CONNECT_LIMIT: Duration = Duration::from_secs(3);
+/// How many ports are asked at the same time.
+const THREADS: usize = 32;
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let ports = if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() };
+    let mut ports = Vec::new();
+    for port in if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() } {
+        // Asked twice at the same time a port would answer only once.
+        if !ports.contains(&port) {
+            ports.push(port);
+        }
+    }
     if ports.is_empty() {
         output::product("no serial ports here; name others as tcp:HOST:PORT or unix:PATH")?;
         return Ok(Answer::No);
     }
     let mut found = false;
-    for port in ports {
-        let answer = port.open(arguments.baud).map_err(LinkError::from).and_then(ask);
+    let mut printed = Ok(());
+    ask_all(&ports, arguments.baud, |port, answer| {
         found |= answer.is_ok();
-        output::product(match answer {
+        let told = match answer {
             Ok((about, status)) => format!("{port}: {}", described(&about, &status)),
-            Err(error) => format!("{port}: {error}"),
-        })?;
-    }
+            Err(error) => match failed(port, &error) {
+                Failure::Input(message) | Failure::System(message) => message,
+                Failure::Interrupted(_) | Failure::Told => return,
+            },
+        };
+        if printed.is_ok() {
+            printed = output::product(told).map(|_| ());
+        }
+    });
+    printed?;
     Ok(if found { Answer::Yes } else { Answer::No })
 }
 
-fn ask(wire: Box<dyn Wire>) -> Result<(About, RobotStatus), LinkError> {
-    let (mut client, about) = Client::connect(wire, PATIENCE)?;
-    let status = client.ask(&Status)?;
-    Ok((about, status))
+type Asked = Result<(About, RobotStatus), ConnectionError>;
+
+/// Asks all ports at the same time and tells of them in their order, each as soon as those before it are told.
+fn ask_all(ports: &[Port], baud: u32, mut tell: impl FnMut(&Port, Asked)) {
+    let next = AtomicUsize::new(0);
+    let claim = || {
+        let place = next.fetch_add(1, Ordering::Relaxed);
+        Some((place, ports.get(place)?))
+    };
+    thread::scope(|scope| {
+        let (sender, answers) = mpsc::channel();
+        for _ in 0..ports.len().min(THREADS) {
+            let sender = sender.clone();
+            scope.spawn(move || {
+                while let Some((place, port)) = claim() {
+                    // The receiver stays until all senders have gone.
+                    let _ = sender.send((place, ask(port, baud)));
+                }
+            });
+        }
+        drop(sender);
+        let (mut early, mut told) = (BTreeMap::new(), 0);
+        for (place, answer) in answers {
+            early.insert(place, answer);
+            while let (Some(answer), Some(port)) = (early.remove(&told), ports.get(told)) {
+                tell(port, answer);
+                told += 1;
+            }
+        }
+    });
 }
 
-fn described(about: &About, status: &RobotStatus) -> String {
-    let About { protocol, blob_format, genes, number_type, name, .. } = about;
-    let mut text =
-        format!("{name}, {number_type}, link version {protocol}, blob format {blob_format}, at most {genes} genes");
-    for (place, slot) in status.slots.iter().enumerate() {
-        let stage = match slot.stage {
-            Stage::Empty => "empty",
-            Stage::Partial => "upload not finished",
-            Stage::Verified => "ready",
-            Stage::Trial => "on trial",
-            Stage::Confirmed => "confirmed",
-            Stage::Rejected => "rolled back",
-        };
-        let identity: String = slot.identity.iter().map(|byte| format!("{byte:02x}")).collect();
-        let charge = if status.active == Some(place as u8) {
-            format!(", in charge for {} ticks", status.ticks)
-        } else {
-            String::new()
-        };
-        let content = if slot.stage == Stage::Empty { String::new() } else { format!(" {identity}") };
-        text += &format!("\n  slot {place}:{content} {stage}{charge}");
-    }
-    text
+fn ask(port: &Port, baud: u32) -> Asked {
+    let (mut client, about) = connect(port, baud, CONNECT_LIMIT, PATIENCE)?;
+    let status = client.ask(&Status)?;
+    Ok((about, status))
 }

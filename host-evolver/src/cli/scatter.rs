@@ -1,8 +1,9 @@
 //! `grn scatter`.
 
+use super::options::within;
 use super::{Answer, Failure, output};
 use crate::files;
-use firmware_sim::scenario::{RandomObstacles, Scenario};
+use firmware_sim::scenario::{InputError, RandomObstacles, Scenario, random};
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -13,13 +14,13 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Share of the region that obstacles cover, at most 0.5.
-    #[arg(long, default_value_t = 0.05)]
+    #[arg(long, default_value_t = 0.05, value_parser = |text: &str| within(text, &random::DENSITY))]
     density: f64,
     /// Least and greatest radius, metres.
-    #[arg(long, num_args = 2, value_names = ["LEAST", "GREATEST"], default_values_t = [0.3, 0.9])]
+    #[arg(long, num_args = 2, value_names = ["LEAST", "GREATEST"], default_values_t = [0.3, 0.9], value_parser = |text: &str| within(text, &random::RADIUS))]
     radius: Vec<f64>,
     /// Kept free on both sides of every target's path, metres.
-    #[arg(long, default_value_t = 1.45)]
+    #[arg(long, default_value_t = 1.45, value_parser = |text: &str| within(text, &random::CLEARANCE))]
     clearance: f64,
     /// The file to write [default: standard output].
     #[arg(long, value_name = "FILE.toml")]
@@ -33,7 +34,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     }
     let radius = [arguments.radius[0], arguments.radius[1]];
     let Arguments { seed, density, clearance, .. } = *arguments;
-    let world = scenario.with_random_obstacles(&RandomObstacles { seed, density, radius, clearance })?;
+    let obstacles = RandomObstacles { seed, density, radius, clearance };
+    let world = scenario.with_random_obstacles(&obstacles).map_err(|error| {
+        // Its keys are those of the options.
+        let option = format!("--{}", error.key().split('[').next().unwrap_or_default());
+        InputError::new(option, error.value(), error.expected()).in_file(&arguments.scenario)
+    })?;
     match &arguments.out {
         Some(path) => files::write(path, world.to_toml())?,
         None => {

@@ -2,7 +2,7 @@
 
 use super::{Answer, Failure, about, output};
 use crate::evaluation::Model;
-use crate::files::read_blob;
+use crate::files::{blob_bytes, read_blob};
 use crate::model::describe;
 use crate::model::notation::Digits;
 use grn_core::blob::{Blob, FORMAT_VERSION};
@@ -20,7 +20,8 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
-    let bytes = std::fs::metadata(&arguments.blob).map_err(about(arguments.blob.display()))?.len();
+    // A blob is canonical: its file has just the bytes that it encodes to.
+    let bytes = blob_bytes(&blob).map_err(about(arguments.blob.display()))?.len();
     if arguments.json {
         output::product_json(&as_json(&blob, bytes))?;
     } else {
@@ -47,7 +48,7 @@ fn identity(blob: &Blob) -> String {
     blob.identity().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn as_json(blob: &Blob, bytes: u64) -> Value {
+fn as_json(blob: &Blob, bytes: usize) -> Value {
     let derived = derived(blob);
     let gains = &blob.gains;
     json!({
@@ -83,7 +84,7 @@ fn as_json(blob: &Blob, bytes: u64) -> Value {
     })
 }
 
-fn as_text(blob: &Blob, bytes: u64) -> String {
+fn as_text(blob: &Blob, bytes: usize) -> String {
     let genes = blob.network.genes().len();
     let mut lines = vec![format!(
         "controller {} · {bytes} bytes, format {FORMAT_VERSION} · {genes} genes, {} nodes",

@@ -1,16 +1,18 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, output, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
 use crate::files::{self, Contents, FolderLock, read_blob};
 use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
-use firmware_sim::config::SwarmConfig;
+use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
+use firmware_sim::swarm;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
-use indicatif::{ProgressBar, ProgressStyle};
+use grn_input::{Found, InputError, Range};
+use indicatif::ProgressBar;
 use serde_json::json;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -46,10 +48,10 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// How many robots.
-    #[arg(long, default_value_t = DEFAULT_ROBOTS)]
+    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots)]
     robots: usize,
     /// World metres per scenario metre [default: the blob's].
-    #[arg(long)]
+    #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
     /// Speed of the target with the longest path, metres per second in the world.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
@@ -61,7 +63,7 @@ pub struct Arguments {
     #[arg(long, default_value = "native")]
     target: Target,
     /// How many of the robots are emulated with --target qemu.
-    #[arg(long, default_value_t = DEFAULT_EMULATED)]
+    #[arg(long, default_value_t = DEFAULT_EMULATED, value_parser = robots)]
     emulated: usize,
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
@@ -94,12 +96,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         robots: arguments.robots,
         seed: arguments.seed,
         target_speed_m_per_s: arguments.speed,
-        ..usual_config(&blob, arguments.robots)
+        ..usual_config(blob.scale, arguments.robots)
     };
+    check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, &stop)
-        .map_err(|failure| failure.about(arguments.blob.display()))?;
+    let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
     if let Some(lock) = &lock {
         for (name, content) in files(&simulation, &scenario, &blob)? {
             files::write(&lock.folder().join(name), content)?;
@@ -122,7 +124,7 @@ fn simulated(
 ) -> Result<Simulation, Failure> {
     let number = arguments.number;
     match arguments.target {
-        Target::Native => watched(blob, scenario, config, number, stop),
+        Target::Native => watched(&arguments.blob, blob, scenario, config, number, stop),
         #[cfg(unix)]
         Target::Qemu => {
             let image = arguments.image.clone().unwrap_or_else(|| {
@@ -132,19 +134,38 @@ fn simulated(
                 })
             });
             let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
-            with_progress(stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
+            let path = &arguments.blob;
+            with_progress(path, stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
         }
         #[cfg(not(unix))]
         Target::Qemu => Err(Failure::Input("--target qemu needs Unix sockets, which this system has not".into())),
     }
 }
 
-/// The usual swarm for a blob: two mother robots, or one if there is only one robot.
-pub fn usual_config(blob: &Blob, robots: usize) -> SwarmConfig {
+fn robots(text: &str) -> Result<usize, String> {
+    options::within(text, &Range::new(1, MAX_ROBOTS, "(a whole one)"))
+}
+
+/// Whether a swarm can be set up in the world of a scenario's file.
+pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
+    swarm::check(scenario, config).map_err(|error| match error.field {
+        "scale" | "robots" => {
+            let [east, north] = scenario.region();
+            let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
+            let error = InputError::new("region", format!("[{east:?}, {north:?}]"), fault);
+            let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
+            grn_input::locate(&text, error).in_file(path).into()
+        }
+        _ => error.into(),
+    })
+}
+
+/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
+pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
     SwarmConfig {
         robots,
         mothers: robots.clamp(1, 2),
-        scale: f64::from(blob.scale),
+        scale: f64::from(scale),
         target_speed_m_per_s: DEFAULT_SPEED,
         ..SwarmConfig::default()
     }
@@ -152,26 +173,32 @@ pub fn usual_config(blob: &Blob, robots: usize) -> SwarmConfig {
 
 /// Runs a simulation with a progress bar and Ctrl-C.
 pub fn watched(
+    path: &Path,
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
     number: NumberType,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
+    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
 }
 
 fn with_progress(
+    blob: &Path,
     stop: &AtomicBool,
     simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
 ) -> Result<Simulation, Failure> {
-    let style = ProgressStyle::with_template("simulating {bar:40} {percent:>3} % · {eta} left");
-    let bar = ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let style = progress::style("simulating {bar:40} {percent:>3} % · {left}", &progress::Found::default());
+    let bar = ProgressBar::new(1000).with_style(style);
     let result = simulate(&mut |share| {
         bar.set_position((share * 1000.0) as u64);
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.finish_and_clear();
+    let result = result.map_err(|error| match &error {
+        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(blob.display())(error),
+        SimulationError::Config(_) | SimulationError::Brain(_) | SimulationError::Emulator(_) => error.into(),
+    });
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 

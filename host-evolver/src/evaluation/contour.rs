@@ -94,7 +94,7 @@ impl<M: Medium> Follower<M> {
         corners.into_iter().find(|&node| self.error(node, view) >= threshold)
     }
 
-    /// The number of the last explored component; they are numbered in turn.
+    /// The number of the last explored component; numbers count up from 1.
     pub(super) fn last_component(&self) -> u32 {
         self.component
     }

@@ -43,7 +43,7 @@ pub(super) fn with_corners(
     sharp
 }
 
-/// Those suspects that do miss the contour, as far as the error in a chord's middle and just beside it can tell.
+/// The suspects that do miss the contour, judged by the pattern error in the chord's middle and just beside it.
 fn missing(ring: &[Point<f64>], suspects: &[usize], errors: &impl Fn(&[Point<f64>; WIDTH]) -> Lanes) -> Vec<usize> {
     let mut missing = Vec::new();
     for places in suspects.chunks(WIDTH) {

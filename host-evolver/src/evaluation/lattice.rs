@@ -5,11 +5,11 @@ use grn_core::geometry::{Point, Vector};
 use std::ops::Range;
 
 /// Spacing of the lattice, metres. Contours are refined between its nodes; only topology is decided on it.
-pub const LATTICE_STEP: f64 = 0.2;
+pub const LATTICE_STEP: f64 = firmware_sim::scenario::limits::LATTICE[0];
 /// An edge of the lattice is creased if the distance to the walls in its middle is this far from the ends' mean, metres.
 const CREASE: f64 = 0.004;
 /// How far a lattice reaches beyond the scenario's region, metres. A pattern that gets there is open.
-const MARGIN: f64 = 5.0;
+const MARGIN: f64 = firmware_sim::scenario::limits::LATTICE[1];
 
 /// A lattice node's place in row-major order.
 pub(super) type NodeIndex = usize;
@@ -41,8 +41,8 @@ impl Direction {
 
 /// A square lattice over a scenario's region and a margin around it.
 ///
-/// Rows are a whole number of lanes long, so that aligned runs of nodes can be computed together. Nodes on the border
-/// count as outside every pattern; only from the others are neighbours asked for.
+/// The length of a row is a multiple of [`WIDTH`], so that eight aligned nodes can be computed together. Nodes on the
+/// border count as outside every pattern, so neighbours are only ever needed of nodes that have all four.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     origin: Point<f64>,

@@ -1,4 +1,4 @@
-//! A lattice with what models read at its nodes: kept for the coarse one, computed when asked for on the fine one.
+//! A lattice with the inputs of models at its nodes: stored for the coarse lattice, computed on demand for the fine one.
 
 use super::fine_lattice::{MOST_KEPT_SNAPSHOTS, Run};
 use super::lanes::{Lanes, WIDTH};
@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 /// A lattice with what models need to know at its nodes.
 pub(super) trait Medium {
-    /// Whether inputs at nodes are at hand.
+    /// Whether the inputs at all nodes are stored, so that reading them costs nothing.
     const KEEPS_INPUTS: bool;
     fn world(&self) -> &World;
     fn lattice(&self) -> &Lattice;
@@ -44,7 +44,7 @@ pub(super) trait Medium {
     }
 }
 
-/// The world's own lattice, whose inputs are kept.
+/// The coarse lattice, with stored inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Kept<'w>(pub &'w World);
 
@@ -74,7 +74,7 @@ impl Medium for Kept<'_> {
     }
 }
 
-/// The fine lattice as a medium: inputs are computed when asked for.
+/// The fine lattice: inputs are computed on demand and then kept.
 #[derive(Clone, Copy)]
 pub(super) struct Computed<'w>(pub &'w World);
 

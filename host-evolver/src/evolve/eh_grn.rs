@@ -77,8 +77,8 @@ pub struct Tuned {
 /// Searches θ with a budget of `evaluations`. CMA-ES starts at a random mean, and again at another whenever it has
 /// nothing left to learn. Returns `None` if it was stopped.
 ///
-/// It learns from the better half of a generation only, like the version that the paper cites, so the others are
-/// evaluated no further than it takes to see that they are worse.
+/// CMA-ES learns from the better half of a generation only (no negative weights, as in the version that the paper
+/// cites). So the worse half is evaluated only until it is sure to be worse.
 pub fn search(
     structure: Structure,
     world: &World,

@@ -15,7 +15,7 @@ pub use individual::Individual;
 pub use objective::Objective;
 pub use objectives::{Objectives, ObjectivesError};
 pub use search::{Advance, Search};
-pub use settings::{DeSettings, Settings, SettingsError};
+pub use settings::{DeSettings, MOST_EVALUATIONS, Settings, SettingsError};
 pub use state::{Milestone, State};
 
 #[cfg(test)]

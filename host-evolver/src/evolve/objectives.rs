@@ -48,6 +48,22 @@ impl Objectives {
         self.names().zip(values).filter(|(name, _)| is_further(name)).map(|(_, &value)| value).collect()
     }
 
+    /// What they measure, in order, for people.
+    pub fn descriptions(&self) -> impl Iterator<Item = &'static str> {
+        self.0.iter().map(|objective| objective.description())
+    }
+
+    /// All values in order, from those that every file has and the further ones.
+    pub fn in_order(&self, nodes: f64, f2: f64, further: &[f64]) -> Vec<f64> {
+        let mut further = further.iter().copied();
+        let value = |name: &str| match name {
+            _ if name == Nodes.name() => nodes,
+            _ if name == RingError.name() => f2,
+            _ => further.next().unwrap_or(f64::MAX),
+        };
+        self.names().map(value).collect()
+    }
+
     /// Their values of a candidate, in order. A value that is not finite becomes the largest number: files hold no other.
     pub fn values(&self, candidate: &Candidate<'_>) -> Vec<f64> {
         let finite = |value: f64| if value.is_finite() { value } else { f64::MAX };

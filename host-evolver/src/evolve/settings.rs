@@ -6,6 +6,10 @@ use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// The largest budget: some hours. The history of its 12,500 generations, written with every checkpoint, takes two
+/// megabytes.
+pub const MOST_EVALUATIONS: usize = 10_000_000;
+
 /// Everything that decides a run besides the scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -82,6 +86,11 @@ impl Settings {
         self.de.population * (1 + self.de.generations)
     }
 
+    /// Evaluations of the first generation.
+    pub fn least_evaluations(&self) -> usize {
+        self.population * self.evaluations_each()
+    }
+
     pub(super) fn differential_evolution(&self) -> Result<de::Settings, SettingsError> {
         let DeSettings { population, weight, crossover, generations } = self.de;
         de::Settings::new(population, weight, crossover, generations).map_err(|error| SettingsError(error.to_string()))
@@ -89,12 +98,16 @@ impl Settings {
 
     pub(crate) fn check(&self) -> Result<(), SettingsError> {
         self.differential_evolution()?;
-        let least = self.population * self.evaluations_each();
+        let least = self.least_evaluations();
         let faults = [
             (self.population < 2, format!("population = {}: at least 2 are needed", self.population)),
             (
                 self.evaluations < least,
                 format!("evaluations = {}: the first generation alone takes {least}", self.evaluations),
+            ),
+            (
+                self.evaluations > MOST_EVALUATIONS,
+                format!("evaluations = {}: at most {MOST_EVALUATIONS} are possible", self.evaluations),
             ),
             (!(0.0..=1.0).contains(&self.crossover), format!("crossover = {} is no probability", self.crossover)),
             (!(0.0..=1.0).contains(&self.mutation), format!("mutation = {} is no probability", self.mutation)),

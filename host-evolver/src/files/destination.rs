@@ -1,10 +1,13 @@
 //! Where something is written that a user has named: a file, through links if it is one, or a device or pipe that stays what
 //! it is.
 
-use super::{FileError, UNFINISHED};
+use super::error::FileError;
 use std::fs::{File, Metadata, OpenOptions, Permissions};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+
+/// How names of files and folders begin while they are being written.
+pub(super) const UNFINISHED: &str = ".unfinished-";
 
 /// Links that lead on to links, at most; as many as Linux follows.
 const MOST_LINKS: usize = 40;

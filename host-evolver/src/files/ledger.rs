@@ -3,7 +3,9 @@
 //! The manifest is written before the files, with what they are going to be, and again when they are all there. So after any
 //! kill it is known which files of the folder are ours, which of them are whole, and which belong to an earlier state.
 
-use super::{FileError, sha256, write};
+use super::destination::write;
+use super::error::FileError;
+use super::seal::sha256;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
@@ -38,8 +40,29 @@ impl Ledger {
         self.names().find(|name| !self.holds(folder, name))
     }
 
-    /// Brings a folder to hold `contents`, of which the caller's manifest tells: `manifest(ledger, finished)` writes it.
-    /// Files of the ledger that are no longer wanted are deleted, unless somebody has changed them since.
+    /// Writes `contents` into a folder whose manifest tells of this ledger; `manifest` writes another ledger into it. Files of
+    /// this one stay for the time being. Returns what the folder answers for.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn add(
+        &self,
+        folder: &Path,
+        contents: &Contents,
+        manifest: impl Fn(&Ledger) -> Result<(), FileError>,
+    ) -> Result<Ledger, FileError> {
+        let new = Ledger::of(contents);
+        let mut all = self.clone();
+        all.0.extend(new.0.clone());
+        manifest(&all)?;
+        for (name, content) in contents.iter().filter(|(name, _)| !new.holds(folder, name)) {
+            write(&folder.join(name), content)?;
+        }
+        Ok(all)
+    }
+
+    /// Brings a folder to hold `contents` as [`add`](Self::add) does; `manifest` hears at last that all is there. Files of
+    /// this ledger that are no longer wanted are deleted, unless somebody has changed them since.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -49,15 +72,8 @@ impl Ledger {
         contents: &Contents,
         manifest: impl Fn(&Ledger, bool) -> Result<(), FileError>,
     ) -> Result<Ledger, FileError> {
+        self.add(folder, contents, |all| manifest(all, false))?;
         let new = Ledger::of(contents);
-        let mut under_way = self.clone();
-        under_way.0.extend(new.0.clone());
-        if under_way != new || contents.keys().any(|name| !new.holds(folder, name)) {
-            manifest(&under_way, false)?;
-        }
-        for (name, content) in contents.iter().filter(|(name, _)| !new.holds(folder, name)) {
-            write(&folder.join(name), content)?;
-        }
         for name in self.names().filter(|name| !contents.contains_key(*name)) {
             self.remove(folder, name)?;
         }

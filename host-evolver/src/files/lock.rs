@@ -3,7 +3,7 @@
 //! The lock is the operating system's own on a small file in the folder, so it ends with its holder, however that dies. The
 //! file says who holds it; alone it means nothing.
 
-use super::FileError;
+use super::error::FileError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -12,7 +12,8 @@ use std::time::{Duration, SystemTime};
 /// The name of the file that is locked.
 pub(super) const LOCK: &str = ".grn-lock";
 
-/// A new holder needs a moment to write down who it is; who asks looks so many times.
+/// A new holder needs a moment to write down who it is. Whoever finds the lock taken reads the note this many times before
+/// it reports an unknown holder.
 const LOOKS: u32 = 10;
 
 /// Keeps other processes out of a folder until it is dropped.

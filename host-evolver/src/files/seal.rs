@@ -1,8 +1,6 @@
 //! Text files that carry the SHA-256 of their content in a last line, and of what they were made from: a file that was cut,
 //! changed, or belongs elsewhere does not open.
 
-use super::sha256;
-
 const SEAL: &str = "# sha256 ";
 
 /// The text with its seal; `origin` is what it was made from.
@@ -18,6 +16,12 @@ pub fn unsealed<'t>(sealed: &'t str, origin: &str) -> Option<&'t str> {
 
 fn digest(text: &str, origin: &str) -> String {
     sha256(format!("{}\n{text}", sha256(origin)))
+}
+
+/// The SHA-256 of some bytes, hexadecimal.
+pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
+    use sha2::Digest;
+    sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A network in words: names, equations, an indented tree, and the data of its figures.
 
+use super::notation::Terminal;
 use super::notation::{self, Digits, Part, input_name};
-use super::tree::Terminal;
 use grn_core::network::{Gene, Network, Source};
 
 /// The name of a gene: y1, y2, … and M for the last.
@@ -71,7 +71,7 @@ fn unfolded(network: &Network<f32>) -> Option<Vec<Part<f32>>> {
     Some(parts)
 }
 
-/// The network as an expression in the one [notation](super::notation), or how many nodes it has if that is more than 1000.
+/// The network as an expression in the one [notation], or how many nodes it has if that is more than 1000.
 pub fn expression(network: &Network<f32>, digits: Digits) -> String {
     match unfolded(network) {
         Some(parts) => notation::expression(parts, digits),

@@ -1,9 +1,18 @@
 //! The one notation for models: expressions in prefix form with θ in square brackets,
 //! `(XNOR[0.9256] (NAND[0.8393] x1 x1) x2)`. Files, tables, figures and [`Tree`](super::tree::Tree)'s text are all written here.
 
-use super::tree::Terminal;
 use grn_core::motif::Motif;
+use serde::{Deserialize, Serialize};
 use std::fmt::{Display, Write as _};
+
+/// One of the two inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Terminal {
+    /// Morphogen of the targets.
+    X1,
+    /// Morphogen of the obstacles.
+    X2,
+}
 
 /// How θ are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

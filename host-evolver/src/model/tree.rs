@@ -1,20 +1,11 @@
 //! Syntax trees of network motifs: what genetic programming varies.
 
-use super::notation::{self, Digits, Part};
+use super::notation::{self, Digits, Part, Terminal};
 use grn_core::motif::Motif;
 use grn_core::network::{DEFAULT_GENES, Gene, Network, NetworkError, Source};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
-
-/// One of the two inputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Terminal {
-    /// Morphogen of the targets.
-    X1,
-    /// Morphogen of the obstacles.
-    X2,
-}
 
 /// A node without its parameter: what decides whether two trees have the same structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,6 +1,7 @@
-//! How trees come to be and change: ramped half-and-half, subtree crossover, subtree mutation.
+//! How trees are created and varied: ramped half-and-half, subtree crossover, subtree mutation.
 
-use crate::model::tree::{Node, Terminal, Tree, children_of};
+use super::notation::Terminal;
+use super::tree::{Node, Tree, children_of};
 use grn_core::motif::Motif;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
@@ -25,7 +26,7 @@ impl MotifSet {
     }
 }
 
-/// How trees come to be and change. Every call draws from the given random numbers only.
+/// How trees are created and varied. Every call uses only the given random numbers, so equal seeds give equal trees.
 pub trait Variation: Send + Sync {
     /// Individual number `place` of an initial population.
     fn create(&self, place: usize, rng: &mut dyn Rng) -> Tree;
@@ -73,7 +74,7 @@ impl Grammar {
 }
 
 impl Variation for Grammar {
-    /// Ramped half-and-half: depths in turn, full and grown alternating.
+    /// Ramped half-and-half: depths cycle through their range, and full and grown trees alternate.
     fn create(&self, place: usize, mut rng: &mut dyn Rng) -> Tree {
         let (least, most) = self.depth;
         let ramp = most - least + 1;

@@ -1,6 +1,8 @@
 //! What tests that drive the command share.
 #![allow(dead_code, reason = "every test file uses a part of it")]
 
+pub mod desk;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

@@ -40,7 +40,7 @@ impl Rect {
 }
 
 /// How a shape is filled and outlined; `none` for neither.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Paint {
     pub fill: String,
     pub stroke: String,

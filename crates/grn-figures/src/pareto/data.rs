@@ -1,6 +1,7 @@
 //! What a figure of a front takes.
 
-use crate::canvas::paint::Mark;
+use crate::canvas::paint::{Mark, Paint};
+use crate::canvas::style::{INK, THIN, VERMILLION};
 use grn_optimisers::knee::Knee;
 
 /// The words and the mark of a knee; none for a point that is no knee.
@@ -10,6 +11,23 @@ pub(crate) fn knee_look(knee: Knee) -> Option<(&'static str, Mark)> {
         (true, false) => Some(("knee (angle)", Mark::Triangle)),
         (false, true) => Some(("knee (utility)", Mark::Square)),
         (false, false) => None,
+    }
+}
+
+/// How a model that is not on the front is marked.
+pub(crate) fn other_look(feasible: bool) -> (Mark, f64, Paint) {
+    if feasible {
+        (Mark::Circle, 1.7, Paint::fill("#C4C4C4"))
+    } else {
+        (Mark::Cross, 1.6, Paint::stroke("#B0B0B0", 0.7))
+    }
+}
+
+/// How a model on the front is marked.
+pub(crate) fn front_look(knee: Knee) -> (Mark, f64, Paint) {
+    match knee_look(knee) {
+        Some((_, mark)) => (mark, 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
+        None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
     }
 }
 

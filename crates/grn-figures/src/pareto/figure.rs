@@ -3,13 +3,13 @@
 use crate::canvas::error::{FigureError, finite, within};
 use crate::canvas::note::nothing_to_draw;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{COLUMN, DATA, GREY, INK, LABEL, SMALL, THIN, VERMILLION};
+use crate::canvas::style::{COLUMN, DATA, GREY, INK, LABEL, SMALL, THIN};
 use crate::canvas::svg::Svg;
 use crate::canvas::text::{BOLD, lines, width};
 use crate::chart::axes::{Chart, Line};
 use crate::chart::legend::{Key, legend};
 use crate::chart::place::Taken;
-use crate::pareto::data::{ParetoPoint, Reference, knee_look};
+use crate::pareto::data::{ParetoPoint, Reference, front_look, knee_look, other_look};
 use crate::pareto::front::{Label, complexity, error_axis, front, staircase};
 use grn_optimisers::knee::Knee;
 
@@ -128,21 +128,6 @@ fn name_reference(svg: &mut Svg, chart: &Chart, reference: &Reference, taken: &m
         let font = Font::new(SMALL, Anchor::Start).colour(GREY);
         svg.text(&reference.label, (rect.x + 1.0, rect.y + 6.9), &font);
         taken.add(rect, 20.0);
-    }
-}
-
-fn other_look(feasible: bool) -> (Mark, f64, Paint) {
-    if feasible {
-        (Mark::Circle, 1.7, Paint::fill("#C4C4C4"))
-    } else {
-        (Mark::Cross, 1.6, Paint::stroke("#B0B0B0", 0.7))
-    }
-}
-
-fn front_look(knee: Knee) -> (Mark, f64, Paint) {
-    match knee_look(knee) {
-        Some((_, mark)) => (mark, 3.2, Paint::stroke(INK, THIN).filled(VERMILLION)),
-        None => (Mark::Circle, 2.4, Paint::stroke(INK, 0.9).filled("#FFFFFF")),
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn front(points: &[ParetoPoint]) -> Vec<usize> {
     order
 }
 
-/// The axis of f1: a tick at every size there is, as far as there is room.
+/// The axis of f1, with a tick at every size that occurs unless they would stand too close.
 pub(crate) fn complexity(points: &[ParetoPoint]) -> Axis {
     let nodes = points.iter().map(|p| f64::from(p.nodes));
     let (lo, hi) = nodes.fold((f64::INFINITY, 0.0_f64), |(lo, hi), n| (lo.min(n), hi.max(n)));

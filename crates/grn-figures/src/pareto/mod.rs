@@ -3,3 +3,4 @@
 pub(crate) mod data;
 pub(crate) mod figure;
 mod front;
+pub(crate) mod pairs;

@@ -19,7 +19,8 @@ pub(crate) fn share(figure: &TraceFigure, time: f64) -> f64 {
     if hi > lo { (time - lo) / (hi - lo) } else { 0.0 }
 }
 
-/// The dashes of a pattern that so many moments follow: the last is whole, earlier ones are more and more broken.
+/// The dashes of a pattern that is drawn this many instants before the last: the last is a whole line, earlier ones are
+/// more and more broken.
 fn age(later: usize) -> &'static [f64] {
     match later {
         0 => &[],

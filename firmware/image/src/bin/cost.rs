@@ -16,6 +16,9 @@
 //! | gradient | that of the pattern error |
 //! | rk4-step | one integration step, after `rest`; a tick of the shipped blobs has one |
 //! | rk4-step-more | each further step in the same call |
+//!
+//! Then come those of the longest message on its way through the radio, 36 bytes: packed, unpacked, and cut into fragments
+//! and put together again for payloads of 20 and of 2 bytes.
 #![no_std]
 #![no_main]
 
@@ -25,6 +28,8 @@ use grn_core::dynamics::{Expression, Step};
 use grn_core::geometry::{Point, Vector};
 use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::Pattern;
+use grn_core::robot::radio::packed::{self, Packed};
+use grn_core::robot::radio::{Assembler, Fragment, Fragments};
 use grn_core::robot::{Controller, Percept};
 use grn_core::scalar::{Dual, Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
@@ -44,6 +49,7 @@ fn main() -> u8 {
         let Ok(blob) = Blob::decode(bytes) else { return false };
         measure::<f32>(name, &blob) && measure::<Q8_24>(name, &blob)
     });
+    let all_measured = all_measured && measure_radio();
     print("stack ");
     decimal(stack_used());
     print(" bytes\n");
@@ -59,6 +65,36 @@ fn instructions(work: &mut dyn FnMut()) -> u32 {
         counter::read().wrapping_sub(before)
     };
     count(work).wrapping_sub(count(&mut || ()))
+}
+
+/// The longest message's way through the radio; false if it does not arrive.
+fn measure_radio() -> bool {
+    let show = |part: &str, count: u32| {
+        for word in ["message ", part, " "] {
+            print(word);
+        }
+        decimal(count as usize);
+        print("\n");
+    };
+    let everything = scene::everything();
+    let Some(message) = everything.heard.first() else { return false };
+    let mut packed = Packed::new();
+    show("write", instructions(&mut || packed = black_box(packed::write(black_box(message)))));
+    let mut unpacked = None;
+    show("read", instructions(&mut || unpacked = black_box(packed::read(black_box(&packed)).ok())));
+    let mut all_arrived = unpacked.as_ref() == Some(message);
+    for (payload, cut, put_together) in [(20, "cut-20", "put-together-20"), (2, "cut-2", "put-together-2")] {
+        let fragments = || Fragments::new(black_box(message), payload, 1).into_iter().flatten();
+        show(cut, instructions(&mut || fragments().for_each(|piece| _ = black_box(piece))));
+        let mut assembler = Assembler::new();
+        let mut heard = None;
+        let hearing =
+            |piece: Fragment| instructions(&mut || heard = black_box(assembler.receive(0, black_box(&piece))));
+        let count = fragments().map(hearing).sum();
+        show(put_together, count);
+        all_arrived &= heard.as_ref() == Some(message);
+    }
+    all_arrived
 }
 
 /// The parts of a tick and the whole; false if the blob makes no controller.

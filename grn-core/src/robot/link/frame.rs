@@ -4,8 +4,8 @@
 //! 0x00  COBS( version  sequence  operation  payload…  CRC-32, little-endian )  0x00
 //! ```
 //!
-//! Consistent-overhead byte stuffing (Cheshire and Baker 1999) leaves no zero inside a frame, so a zero always ends one
-//! and the receiver is in step again after any garbage. The zero in front ends what garbage may have begun. COBS is
+//! Consistent-overhead byte stuffing (Cheshire and Baker 1999) leaves no zero inside a frame. So a zero always ends a frame,
+//! and after garbage a receiver finds the next frame at the next zero. The zero in front of a frame ends such garbage. COBS is
 //! written out here because the decoder of the usual crate cannot be linked without panic machinery.
 
 use heapless::Vec;

@@ -51,24 +51,24 @@ requests! {
     Percept = 10 -> Command,
 }
 
-/// Who are you? Begins a conversation.
+/// Asks what the robot is. Begins a conversation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identify;
 
-/// What is in your slots?
+/// Asks what the robot has in its slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status;
 
-/// A blob will follow.
+/// Announces a blob: the robot erases a slot for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Begin {
-    /// Its bytes.
+    /// The blob's length, bytes.
     pub length: u32,
-    /// Its identity.
+    /// The blob's identity.
     pub identity: Identity,
 }
 
-/// Some of the blob, in order.
+/// The next bytes of the blob.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Chunk {
     /// Where in the blob these bytes begin.
@@ -77,28 +77,28 @@ pub struct Chunk {
     pub bytes: Vec<u8, MAX_CHUNK>,
 }
 
-/// The blob is complete: read it back and check it.
+/// Ends an upload: the robot reads the blob back and checks it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Commit;
 
-/// Put the blob in charge, on trial.
+/// Puts a blob in charge, on trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Activate {
-    /// Which.
+    /// The blob's identity.
     pub identity: Identity,
 }
 
-/// End the trial: the blob stays.
+/// Ends the trial of a blob: it stays in charge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Confirm {
-    /// Which.
+    /// The blob's identity.
     pub identity: Identity,
 }
 
-/// Take the blob out of charge and go back to the other.
+/// Takes a blob out of charge and puts the other one back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RollBack {
-    /// Which.
+    /// The identity of the blob that goes.
     pub identity: Identity,
 }
 
@@ -122,9 +122,9 @@ pub struct About {
     pub genes: u8,
     /// The most bytes of a blob it stores.
     pub blob_bytes: u16,
-    /// What it computes in.
+    /// The number type it computes in.
     pub number_type: NumberType,
-    /// What it calls itself.
+    /// Its name.
     pub name: String<24>,
 }
 

@@ -2,11 +2,11 @@
 //!
 //! | layer | module | what it does |
 //! |---|---|---|
-//! | 1 | [`frame`] | COBS and CRC: bytes ↔ frames, in step again after any garbage |
+//! | 1 | [`frame`] | COBS and CRC: bytes ↔ frames; garbage in between is skipped |
 //! | 2 | [`message`], [`refusal`] | frames ↔ requests, responses and refusals |
-//! | 3 | [`server`] | the robot: does what requests say, each once |
+//! | 3 | [`server`] | the robot: carries out each request once |
 //!
-//! The host speaks first and waits; when no response comes it sends the same frame again. Requests about blobs are the same
+//! The host sends a request and waits; when no response comes it sends the same frame again. Requests about blobs are the same
 //! bytes in every version of the protocol, so that a robot with old or new firmware can always be given another blob.
 
 pub mod frame;

@@ -35,7 +35,7 @@ pub enum Refusal {
     NoUpload,
     /// The next chunk begins elsewhere.
     Chunk {
-        /// Where.
+        /// The offset at which it begins, bytes.
         expected: u32,
     },
     /// The blob is unsound.
@@ -54,6 +54,8 @@ pub enum Refusal {
     NoController,
     /// No robot can have this percept; it was not ticked.
     Percept(PerceptFault),
+    /// The blob in charge has the highest upload number there is, so no upload could be newer.
+    SequenceUsedUp,
 }
 
 /// What is wrong with a blob, as far as a robot tells.
@@ -154,6 +156,7 @@ impl From<SlotError> for Refusal {
             SlotError::NotThere => Refusal::NotThere,
             SlotError::NoFallback => Refusal::NoFallback,
             SlotError::MarksUsedUp => Refusal::MarksUsedUp,
+            SlotError::SequenceUsedUp => Refusal::SequenceUsedUp,
         }
     }
 }
@@ -213,6 +216,10 @@ impl fmt::Display for Refusal {
             }
             Refusal::Percept(PerceptFault::Heading) => {
                 "the percept's heading is not a unit vector: give cosine and sine in units of 2^-14"
+            }
+            Refusal::SequenceUsedUp => {
+                "the blob in charge has the highest upload number, 4294967295, so no upload could be newer: roll it back, or \
+                 write its slot with a programmer and a lower number"
             }
         })
     }

@@ -1,6 +1,7 @@
 //! The robot's side of the link.
 //!
-//! What requests do is not inlined: the stack holds what one of them needs, not what all of them need.
+//! The functions that carry out requests are not inlined. Inlined into one function their stack frames would add up, and a
+//! robot's stack is small.
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
@@ -17,12 +18,12 @@ use crate::scalar::{NumberType, Scalar};
 use embedded_storage::nor_flash::{NorFlash, NorFlashErrorKind};
 use heapless::{String, Vec};
 
-/// A blob on trial is confirmed after so many ticks.
+/// How many ticks a blob on trial drives before the robot confirms it by itself.
 pub const TRIAL_TICKS: u16 = 64;
 
-/// Serves one link: takes bytes, does what the requests say, gives bytes.
+/// Serves one link: takes the bytes of requests, carries them out, gives the bytes of responses.
 ///
-/// Each request is done once: when the same comes again, because its response was lost, the response is repeated.
+/// Each request is carried out once. When it comes again because its response was lost, the response is repeated.
 #[derive(Debug)]
 pub struct Server<F, S> {
     receiver: Receiver,

@@ -34,6 +34,8 @@ pub enum SlotError {
     NoFallback,
     /// All marks of the slot are used up; upload again.
     MarksUsedUp,
+    /// The slot that stays has the highest sequence number there is: no upload could be newer.
+    SequenceUsedUp,
 }
 
 impl fmt::Display for SlotError {
@@ -50,6 +52,10 @@ impl fmt::Display for SlotError {
             SlotError::NotThere => f.write_str("no slot holds this blob; upload it"),
             SlotError::NoFallback => f.write_str("there is no other blob to fall back to"),
             SlotError::MarksUsedUp => f.write_str("the slot's marks are used up; upload again"),
+            SlotError::SequenceUsedUp => f.write_str(
+                "no upload can have a number above 4294967295, which the blob in charge has; roll it back, or write its \
+                 slot with a lower number",
+            ),
         }
     }
 }

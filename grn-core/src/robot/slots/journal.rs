@@ -100,7 +100,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Takes the next unit into account; those that hold no whole mark count for nothing.
+    /// Takes the next unit into account. A unit that holds no whole mark is ignored, but it is used up.
     pub fn read(&mut self, place: usize, unit: [u8; UNIT]) {
         if unit != ERASED {
             self.used = place + 1;

@@ -68,16 +68,21 @@ pub struct SlotStatus {
     pub identity: Identity,
     /// The blob's length, bytes.
     pub length: u32,
-    /// Counts uploads; the higher is the newer.
+    /// Of two slots the one with the higher number is newer; an upload gets the next number after that of the other slot.
     pub sequence: u32,
 }
 
 /// The bytes of a slot that holds this blob, confirmed: for flashing by a programmer instead of through the link.
 ///
+/// Of two slots the robot takes the one with the higher `sequence`; [`u32::MAX`] would leave none for the next upload.
+///
 /// # Errors
-/// [`SlotError::TooLong`], [`SlotError::Blob`].
+/// [`SlotError::TooLong`], [`SlotError::Blob`], [`SlotError::SequenceUsedUp`] for [`u32::MAX`].
 pub fn image(blob: &[u8], sequence: u32) -> Result<Vec<u8, { MIN_SLOT as usize }>, SlotError> {
     let identity = Blob::<DEFAULT_GENES>::decode(blob).map_err(SlotError::Blob)?.identity();
+    if sequence == u32::MAX {
+        return Err(SlotError::SequenceUsedUp);
+    }
     let header = Header { length: blob.len() as u32, sequence, identity }.encode();
     let marks = [Mark::Verified, Mark::Activated, Mark::Confirmed].map(Mark::encode);
     let mut image: Vec<u8, { MIN_SLOT as usize }> = Vec::new();
@@ -175,19 +180,20 @@ impl<F: NorFlash> Slots<F> {
     /// Erases the slot that is not in charge for a blob of `length` bytes.
     ///
     /// # Errors
-    /// [`SlotError::TooLong`], [`SlotError::OnTrial`], or what the flash says.
+    /// [`SlotError::TooLong`], [`SlotError::OnTrial`], [`SlotError::SequenceUsedUp`], or what the flash says.
     pub fn begin(&mut self, length: u32, identity: Identity) -> Result<(), SlotError> {
         if length as usize > MAX_BLOB {
             return Err(SlotError::TooLong);
         }
         let slot = self.active.map_or(0, |active| 1 - active);
         let [first, second] = self.status()?;
-        let other = if slot == 0 { first } else { second };
+        let (other, kept) = if slot == 0 { (first, second) } else { (second, first) };
         let on_trial = self.active_status()?.is_some_and(|status| status.stage == Stage::Trial);
         if on_trial && other.stage == Stage::Confirmed {
             return Err(SlotError::OnTrial);
         }
-        let sequence = first.sequence.max(second.sequence).wrapping_add(1);
+        // Newer than the slot that stays; the number of the slot that is erased does not matter.
+        let sequence = kept.sequence.checked_add(1).ok_or(SlotError::SequenceUsedUp)?;
         let header = Header { length, sequence, identity };
         self.upload = None;
         let start = self.start_of(slot);

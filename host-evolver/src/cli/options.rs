@@ -1,0 +1,30 @@
+//! Ranges of numeric options.
+
+use grn_input::Range;
+use std::fmt::Debug;
+use std::num::NonZeroUsize;
+use std::str::FromStr;
+
+/// Threads per core that may be asked for: more gain nothing, and each costs megabytes.
+const MOST_THREADS_PER_CORE: usize = 8;
+
+/// Parses a number and checks its range, for clap.
+pub fn within<T: FromStr + PartialOrd + Copy + Debug>(text: &str, range: &Range<T>) -> Result<T, String> {
+    let number = text.trim().parse().ok().filter(|number| range.holds(*number));
+    number.ok_or_else(|| range.to_string())
+}
+
+/// Parses a number of threads.
+pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let most = cores * MOST_THREADS_PER_CORE;
+    let count: Option<NonZeroUsize> = text.trim().parse().ok();
+    count.filter(|count| count.get() <= most).ok_or_else(|| {
+        format!("must be a number from 1 to {most} ({MOST_THREADS_PER_CORE} for each of this machine's {cores} cores)")
+    })
+}
+
+/// World metres per scenario metre: what a blob can hold.
+pub fn scale(text: &str) -> Result<f32, String> {
+    within(text, &Range::new(0.01, 10.0, ""))
+}

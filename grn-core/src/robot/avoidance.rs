@@ -159,7 +159,9 @@ mod tests {
             assert!(east.x > 0.05, "{east:?}");
         }
         // After a second with nothing in the way it may choose anew.
-        (0..31).for_each(|_| drop(velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2])));
+        for _ in 0..31 {
+            velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2]);
+        }
         assert!(velocity(&mut avoidance.clone(), Vector::new(-0.01, 0.1), [100, 100]).x > 0.05);
         velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2]);
         assert!(velocity(&mut avoidance, Vector::new(-0.01, 0.1), [100, 100]).x < -0.05);

@@ -18,6 +18,7 @@ const LAST_NUMBER: f64 = 9.0;
 const BELOW: f64 = 32.0;
 /// How far lone points of a panel stand apart.
 const LONE: f64 = 6.0;
+const LONE_RADIUS: f64 = 2.2;
 
 /// What [`convergence`] shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,8 +66,15 @@ pub fn convergence(figure: &ConvergenceFigure) -> Result<Vec<String>, FigureErro
     let right = grid.width - 4.0;
     let words: Vec<String> = labels.iter().map(|label| lines(label, SMALL, right - 45.0 - 20.0, 1).concat()).collect();
     let look = |i: usize| Paint::stroke(series(i).0, DATA).dashed(series(i).1);
-    let keys: Vec<(Key, &str)> =
-        words.iter().enumerate().map(|(i, words)| (Key::Line(look(i)), words.as_str())).collect();
+    let is_lone = |label: &str| {
+        let mut all = panels.iter().flat_map(|panel| &panel.series).filter(|one| one.label == label);
+        all.all(|one| one.points.len() <= 1)
+    };
+    let key = |i: usize| match is_lone(labels[i]) {
+        true => Key::Mark(lone_mark(i).0, LONE_RADIUS, lone_mark(i).1),
+        false => Key::Line(look(i)),
+    };
+    let keys: Vec<(Key, &str)> = words.iter().enumerate().map(|(i, words)| (key(i), words.as_str())).collect();
     let title = grid.title_height(panels.iter().map(|panel| panel.title.as_str())) + 4.0;
     let row = title + HEIGHT + BELOW;
     let page = |panels: &[&ConvergencePanel]| -> Result<String, FigureError> {
@@ -115,7 +123,6 @@ fn draw_panel(svg: &mut Svg, panel: &ConvergencePanel, rect: Rect, labels: &[&st
 /// Draws a series of one point: a mark at the median, a bar between the quartiles, both moved a little aside so that
 /// several series are seen.
 fn lone_point(svg: &mut Svg, chart: &Chart, one: &ConvergenceSeries, unit: f64, (look, aside): (usize, f64)) {
-    const MARKS: [Mark; 4] = [Mark::Circle, Mark::Square, Mark::Diamond, Mark::Triangle];
     let Some((evaluations, q)) = one.points.first() else { return };
     let at = |value: f64| {
         let (x, y) = chart.place(*evaluations as f64 / unit, value);
@@ -124,8 +131,15 @@ fn lone_point(svg: &mut Svg, chart: &Chart, one: &ConvergenceSeries, unit: f64, 
     let colour = series(look).0;
     svg.open("point", &one.label);
     svg.line(at(q.lower), at(q.upper), &Paint::stroke(colour, DATA));
-    svg.mark(MARKS[look % MARKS.len()], at(q.median), 2.2, &Paint::stroke("#FFFFFF", 0.4).filled(colour));
+    let (mark, paint) = lone_mark(look);
+    svg.mark(mark, at(q.median), LONE_RADIUS, &paint);
     svg.close();
+}
+
+/// The mark of a series of one point, by the series' place.
+fn lone_mark(place: usize) -> (Mark, Paint) {
+    const MARKS: [Mark; 4] = [Mark::Circle, Mark::Square, Mark::Diamond, Mark::Triangle];
+    (MARKS[place % MARKS.len()], Paint::stroke("#FFFFFF", 0.4).filled(series(place).0))
 }
 
 fn check(series: &ConvergenceSeries) -> Result<(), FigureError> {

@@ -107,46 +107,63 @@ impl Listener for Progress {
 
 /// The tables as a person reads them.
 fn text(tables: &Tables) -> String {
-    let mut text = String::new();
     let number = |measure: Measure, value: f64| match measure {
         Measure::BestNodes | Measure::KneeNodes => format!("{value:.0}"),
         _ => format!("{value:.5}"),
     };
+    let mut text = String::new();
     for measure in Measure::ALL {
-        text += &format!(
-            "{}\n{:<28}{:<26}{:>10}  {:>27}\n",
-            measure.words(),
-            "scenario",
-            "method",
-            "feasible",
-            "median (quartiles)"
-        );
-        for row in tables.summaries.iter().filter(|row| row.measure == measure) {
+        let rows = tables.summaries.iter().filter(|row| row.measure == measure).map(|row| {
+            let feasible = format!("{} of {}", row.feasible, row.runs);
             let quartiles = row.quartile_words(|value| number(measure, value));
-            let feasible = format!("{}/{}", row.feasible, row.runs);
-            text += &format!("{:<28}{:<26}{feasible:>10}  {quartiles:>27}\n", row.scenario, row.method);
-        }
+            [row.scenario.clone(), row.method.clone(), feasible, quartiles]
+        });
+        text += &format!("{}\n", measure.words());
+        text += &columns(["scenario", "method", "feasible", "median (quartiles)"], rows);
         text.push('\n');
     }
-    text += &format!(
-        "{:<28}{:<14}{:<52}{:>10}{:>8}\n",
-        "scenario", "measure", "better than the baseline?", "p (Holm)", "A12"
-    );
-    for row in &tables.comparisons {
+    let rows = tables.comparisons.iter().map(|row| {
         let pair = format!("{} / {}", row.method, row.baseline);
-        text += &format!(
-            "{:<28}{:<14}{pair:<52}{:>10.1e}{:>8.3}\n",
-            row.scenario,
-            row.measure.short(),
-            row.p_holm,
-            row.a12
-        );
-    }
+        let (p, a12) = (format!("{:.1e}", row.p_holm), format!("{:.3}", row.a12));
+        [row.scenario.clone(), row.measure.short().into(), pair, p, a12]
+    });
+    text += &columns(["scenario", "measure", "better than the baseline?", "p (Holm)", "A12"], rows);
     if !tables.transfers.is_empty() {
-        text += &format!("\n{:<28}{:<28}{:<26}{}\n", "tried in", "model", "evolved for", "success (95 % interval)");
-    }
-    for row in &tables.transfers {
-        text += &format!("{:<28}{:<28}{:<26}{}\n", row.transfer, row.method, row.from, row.rate_words());
+        let rows = tables.transfers.iter();
+        let rows = rows.map(|row| [row.transfer.clone(), row.method.clone(), row.from.clone(), row.rate_words()]);
+        text.push('\n');
+        text += &columns(["tried in", "model", "evolved for", "success (95 % interval)"], rows);
     }
     text
+}
+
+/// A table whose columns are as wide as the longest of their cells.
+fn columns<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let rows: Vec<[String; N]> = std::iter::once(header.map(String::from)).chain(rows).collect();
+    let letters = |cell: &String| cell.chars().count();
+    let mut widths = [0; N];
+    for row in &rows {
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = letters(cell).max(*width);
+        }
+    }
+    let line = |row: &[String; N]| {
+        let cells = row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}  "));
+        format!("{}\n", cells.collect::<String>().trim_end())
+    };
+    rows.iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_do_not_run_into_the_next_column() {
+        let name = "channel with a name that is longer than any column was";
+        let rows = [[name.to_owned(), "MOGP".into()], ["σ".into(), "EH-GRN".into()]];
+        let table = columns(["scenario", "method"], rows.into_iter());
+        let method = |line: &str| line.chars().skip(name.len() + 2).collect::<String>();
+        assert_eq!(table.lines().map(method).collect::<Vec<_>>(), ["method", "MOGP", "EH-GRN"]);
+    }
 }

@@ -34,7 +34,7 @@ fn a_history_of_one_generation_is_a_mark() {
     let pages = convergence(&ConvergenceFigure { panels, y_label: String::new() }).unwrap();
     let document = read(&pages[0]);
     assert_eq!(document.count("class=\"point\""), 2);
-    assert_eq!(document.count("circle"), 1);
+    assert_eq!(document.count("circle"), 1 + 1, "and the legend");
     assert!(document.says("800"), "the axis has a number at or near it: {:?}", document.texts);
 }
 

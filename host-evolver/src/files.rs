@@ -169,7 +169,7 @@ pub fn json(value: &impl Serialize) -> String {
 }
 
 /// The version of this software, in every manifest.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("GRN_COMMIT"), ")");
 
 /// Refuses a manifest that another version of this software has written, whatever else is in it.
 ///

@@ -57,6 +57,10 @@ impl std::error::Error for SimulationError {}
 
 /// A finished run.
 pub struct Simulation {
+    /// How it was set up.
+    pub config: SwarmConfig,
+    /// The number type that the robots computed in.
+    pub number: NumberType,
     /// Every tick of it.
     pub trace: Trace,
     /// What it was worth.
@@ -131,8 +135,8 @@ pub fn simulate(
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        NumberType::F32 => run(blob, scenario, config, native::<f32>(blob)?, watch),
-        NumberType::Q8_24 => run(blob, scenario, config, native::<Q8_24>(blob)?, watch),
+        NumberType::F32 => run(blob, scenario, config, number, native::<f32>(blob)?, watch),
+        NumberType::Q8_24 => run(blob, scenario, config, number, native::<Q8_24>(blob)?, watch),
     }
 }
 
@@ -142,11 +146,12 @@ pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Control
     Ok(move |robot: usize| fresh.clone().on_robot(robot as u8))
 }
 
-/// [`simulate`] with any brains.
+/// [`simulate`] with any brains, which compute in `number`.
 pub(crate) fn run<B: Brain>(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
+    number: NumberType,
     brain: impl FnMut(usize) -> B,
     mut watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
@@ -161,7 +166,8 @@ pub(crate) fn run<B: Brain>(
     let stop_ticks = swarm.config().stop_ticks();
     let options = MetricsOptions { walls: swarm.walls(), ring_radius_m: ruler.ring_radius(), stop_ticks: &stop_ticks };
     let metrics = Metrics::of(swarm.trace(), &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
-    Ok(Some(Simulation { trace: swarm.into_trace(), metrics, ring_radius_m: ruler.ring_radius() }))
+    let config = swarm.config().clone();
+    Ok(Some(Simulation { config, number, trace: swarm.into_trace(), metrics, ring_radius_m: ruler.ring_radius() }))
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.

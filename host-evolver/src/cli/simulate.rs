@@ -1,5 +1,6 @@
 //! `grn simulate`.
 
+use super::show::identity;
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
@@ -54,7 +55,8 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world.
+    /// Speed of the target with the longest path, metres per second in the world, at most 0.127. Slow targets make long
+    /// runs; one of 12 robots may last 11 hours.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
     speed: f64,
     /// Number type the robots compute in.
@@ -110,7 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
     }
     if arguments.json {
-        output::product_json(&as_json(&simulation, arguments.number))?;
+        output::product_json(&metrics_json(&simulation, &scenario, &blob))?;
     } else {
         output::report(table(&simulation));
     }
@@ -158,6 +160,8 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
         }
+        "target_speed_m_per_s" if config.target_speed_m_per_s == DEFAULT_SPEED => about(path.display())(error.expected),
+        "target_speed_m_per_s" => about(format_args!("--speed {}", error.value))(error.expected),
         _ => error.into(),
     })
 }
@@ -206,10 +210,9 @@ fn with_progress(
 
 /// Trace, metrics and picture of a run, by the names of their files.
 pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let number = None;
     let mut csv = Vec::new();
     simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, number))? + "\n";
+    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, scenario, blob))? + "\n";
     let mut contents = Contents::from([
         ("trace.bin".into(), simulation.trace.encode()),
         ("trace.csv".into(), csv),
@@ -249,17 +252,36 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     Ok(())
 }
 
-fn as_json(simulation: &Simulation, number: NumberType) -> serde_json::Value {
-    metrics_json(simulation, Some(number))
-}
-
-fn metrics_json(simulation: &Simulation, number: Option<NumberType>) -> serde_json::Value {
+/// What was run, by what, and what came out.
+fn metrics_json(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> serde_json::Value {
+    let SwarmConfig {
+        robots,
+        mothers,
+        seed,
+        scale,
+        target_speed_m_per_s,
+        settle_s,
+        variation,
+        radio,
+        noise,
+        ref stops,
+    } = simulation.config;
     json!({
-        "scenario": simulation.trace.header().scenario,
-        "seed": simulation.trace.header().seed,
-        "robots": simulation.trace.header().robots,
-        "scale": simulation.trace.header().scale,
-        "number": number,
+        "grn": files::VERSION,
+        "controller": identity(blob),
+        "scenario": scenario.name(),
+        "scenario_sha256": files::sha256(scenario.to_toml()),
+        "seed": seed,
+        "robots": robots,
+        "mothers": mothers,
+        "scale": scale,
+        "number": simulation.number,
+        "target_speed_m_per_s": target_speed_m_per_s,
+        "settle_s": settle_s,
+        "variation": variation,
+        "radio": radio,
+        "noise": noise,
+        "stops": stops,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

@@ -13,13 +13,15 @@ mod destination;
 mod error;
 mod ledger;
 mod lock;
+mod owner;
 mod seal;
 
 use destination::UNFINISHED;
-pub use destination::{probe, write};
+pub use destination::{probe, write, write_together};
 pub use error::{FileError, is_fault_of_system};
 pub use ledger::{Contents, Ledger, remove_empty};
 pub use lock::FolderLock;
+pub use owner::{Owner, owner};
 pub use seal::{sealed, sha256, unsealed};
 
 /// Fills a new folder under a temporary name beside its place and renames it: it is there whole or not at all.

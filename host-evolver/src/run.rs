@@ -11,7 +11,7 @@ pub use manifest::Manifest;
 use crate::evaluation::{Model, World};
 use crate::evolve::{FrontMember, Search, State};
 use crate::figures::{self, Pictures};
-use crate::files::{self, Contents, FileError, FolderLock, Ledger};
+use crate::files::{self, Contents, FileError, FolderLock, Ledger, Owner};
 use crate::model::deploy;
 use crate::results;
 use firmware_sim::scenario::Scenario;
@@ -51,8 +51,11 @@ impl RunFolder {
         let lock = FolderLock::take(folder, command)?;
         let path = folder.join(MANIFEST);
         if path.exists() {
-            let way_out = "a run is here already; continue it with --resume, or choose another folder with --out";
-            return Err(FileError::new(path, way_out));
+            let fault = match files::owner(folder) {
+                Some(Owner::Campaign) => "this is the folder of a campaign; choose another folder with --out",
+                _ => "a run is here already; continue it with --resume, or choose another folder with --out",
+            };
+            return Err(FileError::new(path, fault));
         }
         if let Some(name) = files::first_foreign(folder, &|_| false)? {
             let fault = format!("holds other things ({name}); choose an empty or new folder with --out");
@@ -92,8 +95,9 @@ impl RunFolder {
         let found = manifest.matching(folder)?;
         files::remove_unfinished(&lock, &BELOW)?;
         let path = folder.join(CHECKPOINT);
+        let identity = found.identity();
         let state = match path.exists() {
-            true => Some(checkpoint::load(&path, &found.identity(), &found.settings)?),
+            true => Some(checkpoint::load(&path, &identity, &found.settings)?),
             false => None,
         };
         let mut notices = Vec::new();
@@ -108,6 +112,8 @@ impl RunFolder {
         let run = RunFolder { lock, manifest: Manifest { files: found.files, ..manifest }, notices };
         run.write_manifest(&run.manifest)?;
         files::write(&run.path(SCENARIO), scenario.to_toml())?;
+        // Whoever has changed nothing but the ends of its lines gets the same bytes as others.
+        state.iter().try_for_each(|state| checkpoint::save(&path, &identity, state))?;
         Ok((run, state))
     }
 

@@ -5,7 +5,7 @@ use crate::quoting::{gdb_load, shell_word};
 use crate::sectors::Sector;
 use grn_core::robot::slots;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -214,9 +214,9 @@ impl SlotFile {
     /// # Errors
     /// A file that cannot be written.
     pub fn write(&self, paths: &SlotPaths, programmer: &Programmer) -> Result<(), FileError> {
-        files::write(Path::new(&paths.hex), self.hex())?;
-        files::write(Path::new(&paths.binary), &self.bytes)?;
-        files::write(Path::new(&paths.gdb), self.gdb_script(paths, programmer))
+        let (hex, script) = (self.hex(), self.gdb_script(paths, programmer));
+        let places = [&paths.hex, &paths.binary, &paths.gdb].map(PathBuf::from);
+        files::write_together(places.into_iter().zip([hex.as_bytes(), &self.bytes, script.as_bytes()]))
     }
 }
 

@@ -1,16 +1,19 @@
 //! What using robots has shown to go wrong, one test a fault, named after it.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use firmware_sim::body::Pose;
 use firmware_sim::brain::{Brain, BrainError};
 use firmware_sim::radio::RadioConfig;
-use firmware_sim::{Scenario, Swarm, SwarmConfig};
+use firmware_sim::{Scenario, Stop, Swarm, SwarmConfig};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
 use grn_core::robot::{Command, Controller, Message, Percept};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use grn_tests::golden::repository;
 use grn_tests::robots::Shipped;
-use host_evolver::simulation::{Simulation, simulate};
+use host_evolver::model::deploy;
+use host_evolver::model::tree::Tree;
+use host_evolver::simulation::{PatternRuler, Simulation, simulate};
 use std::ops::ControlFlow;
 
 /// A controller on a radio that gives the robot its own broadcasts back, before what others say, if `loopback`.
@@ -79,4 +82,94 @@ fn a_swarm_that_runs_into_itself_again_and_again_does_not_work() {
     let verdict = deaf.verdict();
     assert!(deaf.metrics.peer_contacts > 12 && !verdict.clear_of_peers && !verdict.works(), "{:?}", deaf.metrics);
     assert!(verdict.encircled && verdict.accurate, "nothing else is wrong: {:?}", deaf.metrics);
+}
+
+/// A printed model and a typical evolved knee.
+const MODELS: [&str; 2] = ["nand-xnor", "(NOR[1.9995] x1 x1)"];
+
+/// A shipped blob by name, or a tree in prefix notation for the channel.
+fn blob(model: &str) -> Blob {
+    let tree = || model.parse::<Tree>().unwrap().network(1.0).unwrap();
+    if model.starts_with('(') {
+        deploy::blob(tree(), &channel().morphogen(), 0.25)
+    } else {
+        Blob::decode(&Shipped::named(model).bytes).unwrap()
+    }
+}
+
+fn channel() -> Scenario {
+    Scenario::load(repository("scenarios/channel.toml")).unwrap()
+}
+
+/// Nobody is lost or strays in the channel when these robots of twelve break down; in every seed, number type and model.
+fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
+    for (model, number) in MODELS.iter().flat_map(|model| NumberType::ALL.map(|number| (model, number))) {
+        for seed in 1..=8 {
+            let config = SwarmConfig {
+                robots: 12,
+                seed,
+                target_speed_m_per_s: 0.03,
+                stops: stops(seed as usize),
+                ..SwarmConfig::default()
+            };
+            let run = simulate(&blob(model), &channel(), config, number, |_| ControlFlow::Continue(()));
+            let metrics = run.unwrap().unwrap().metrics;
+            let away = (metrics.lost_robots, metrics.strayed_robots, metrics.wall_contacts);
+            assert_eq!(away, (0, 0, 0), "{model}, {number}, seed {seed}: {metrics:?}");
+        }
+    }
+}
+
+#[test]
+fn nobody_is_left_standing_behind_robots_that_broke_down() {
+    let robot = |seed: usize, number: usize| 1 + (seed * 5 + number * 4) % 11;
+    for second in [20, 40, 60] {
+        let stop = |seed, number| Stop { robot: robot(seed, number), tick: 32 * (second + 7 * number as u64) };
+        nobody_is_lost_when(|seed| (0..3).map(|number| stop(seed, number)).collect());
+    }
+}
+
+#[test]
+fn nobody_is_left_standing_behind_pairs_that_broke_down() {
+    let robot = |seed: usize, number: usize| 2 + (seed * 5 + number / 2 * 3) % 9 + number % 2;
+    for second in [40, 70] {
+        nobody_is_lost_when(|seed| {
+            (0..4).map(|number| Stop { robot: robot(seed, number), tick: 32 * second }).collect()
+        });
+    }
+}
+
+/// A controller on a robot whose swarm sees no walls.
+struct WallBlind<S>(Controller<S>);
+
+impl<S: Scalar> Brain for WallBlind<S> {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        let percept = Percept { obstacles: Default::default(), ..percept.clone() };
+        self.0.tick(&percept).map_err(|error| BrainError::new(error.to_string()))
+    }
+}
+
+/// The robots that are more than two ring radii from the target in the end, with a box of 10 by 40 cm in the ring's way.
+fn left_behind_a_box<S: Scalar>(model: &str, seed: u64) -> usize {
+    const BOX: &str = "[[wall]]\npolygon = [[8.0, 10.6], [8.4, 10.6], [8.4, 12.2], [8.0, 12.2]]\n";
+    let text = std::fs::read_to_string(repository("scenarios/channel.toml")).unwrap();
+    let scenario = Scenario::parse(&(text.split("[[wall]]").next().unwrap().to_owned() + BOX)).unwrap();
+    let blob = blob(model);
+    let config = SwarmConfig { robots: 12, seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() };
+    let brain = |robot: usize| WallBlind(Controller::<S>::new(&blob, robot as u8).unwrap());
+    let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
+    swarm.run(swarm.arrival_tick(), |_| ControlFlow::Continue(())).unwrap();
+    let ring_radius = PatternRuler::new(&blob, &scenario).unwrap().ring_radius();
+    let away = |pose: &&Pose| (pose.position - swarm.targets()[0]).length() > 2.0 * ring_radius;
+    swarm.poses().iter().filter(away).count()
+}
+
+#[test]
+fn nobody_is_left_standing_behind_a_box_that_no_map_knows() {
+    for model in MODELS {
+        for seed in 1..=6 {
+            let left = (left_behind_a_box::<f32>(model, seed), left_behind_a_box::<Q8_24>(model, seed));
+            assert_eq!(left, (0, 0), "{model}, seed {seed}");
+        }
+    }
 }

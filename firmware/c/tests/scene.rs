@@ -221,3 +221,24 @@ fn random_percepts_give_equal_commands() {
         compare::<Q8_24>(&blob, GrnNumber::Q8_24);
     }
 }
+
+/// The header said that M is a number from 0 to 1.
+#[test]
+fn the_morphogen_of_a_last_gene_xnor_may_be_below_zero() {
+    let bytes = model("andn-nand-xnor.grn");
+    let mut storage = GrnController::default();
+    let (size, number) = (size_of::<GrnController>(), GrnNumber::F32 as i32);
+    assert_eq!(unsafe { grn_load(&mut storage, size, bytes.as_ptr(), bytes.len(), number, 1) }, GrnStatus::Ok);
+    // Nothing but a target far away.
+    let mut told = GrnPercept::nothing();
+    told.target_count = 1;
+    told.targets[0].position = GrnMillimetres { x: 20_000, y: 0 };
+    let (mut command, mut morphogen) = (GrnCommand::default(), 0.0);
+    for _ in 0..320 {
+        assert_eq!(unsafe { grn_tick(&mut storage, &told, &mut command) }, GrnStatus::Ok);
+        assert_eq!(unsafe { grn_morphogen(&storage, &mut morphogen) }, GrnStatus::Ok);
+    }
+    assert!((-0.01..0.0).contains(&morphogen), "{morphogen}");
+    let header = fs::read_to_string(firmware().join("c/include/grn.h")).unwrap();
+    assert!(header.contains("XNOR may take it a little below 0") && !header.contains("number from 0 to 1"));
+}

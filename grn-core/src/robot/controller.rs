@@ -1,6 +1,7 @@
 //! The controller: one tick from percept to command.
 
-use super::drive::{Drive, heading, reflex};
+use super::avoidance::Avoidance;
+use super::drive::{Drive, heading};
 use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
 use super::message::{BROADCAST_PERIOD, Message};
@@ -64,7 +65,7 @@ pub struct Controller<S, const N: usize = DEFAULT_GENES> {
     knowledge: Knowledge<S>,
     motion: Motion<S>,
     drive: Drive<S>,
-    reflex: S,
+    avoidance: Avoidance<S>,
     tick: u32,
 }
 
@@ -91,7 +92,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             knowledge: Knowledge::new(),
             motion: Motion::new(&blob.gains, ring_radius, S::from_ratio(1, i32::from(TICKS_PER_SECOND))),
             drive: Drive::new(S::from_f32(blob.gains.turn)),
-            reflex: S::from_f32(blob.gains.cruise),
+            avoidance: Avoidance::new(S::from_f32(blob.gains.cruise)),
             tick: 0,
         })
     }
@@ -125,8 +126,9 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let here = Vector::new(east, north);
         self.knowledge.update(percept, here, self.robot);
         let heading = heading(percept.heading);
-        let wanted = self.wanted_velocity(here, percept) + reflex(&percept.proximity, heading, self.reflex);
-        let (left, right) = self.drive.wheels(wanted, heading);
+        let wanted = self.wanted_velocity(here, percept);
+        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge);
+        let (left, right) = self.drive.wheels(velocity, heading);
         Ok(Command { left, right, broadcast: self.broadcast(percept) })
     }
 

@@ -1,7 +1,7 @@
 //! What a robot knows of the world: its own sightings and what others broadcast, with their age.
 
 use super::epuck2::TICKS_PER_SECOND;
-use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
+use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
 use super::percept::{MAX_TARGETS, Percept, Sighting};
@@ -55,6 +55,18 @@ impl<S: Scalar> Knowledge<S> {
         self.neighbours.known()
     }
 
+    /// Whether what pushes the robot at `here` this way can be a neighbour or a wall that it knows.
+    pub fn knows_what_pushes(&self, here: Point<S>, push: Vector<S>) -> bool {
+        let pushes = |neighbour: &Neighbour<S>| {
+            let offset = here - neighbour.position;
+            // Within 45° of the way it pushes.
+            offset.cross(push).abs() < offset.dot(push)
+        };
+        let mut close_neighbours = self.neighbours.known().iter().filter(|neighbour| neighbour.was_close());
+        let on_this_side = |&point: &Point<S>| (here - point).dot(push) > S::ZERO;
+        close_neighbours.any(pushes) || (self.obstacles.is_close() && self.obstacles().iter().any(on_this_side))
+    }
+
     /// Takes in one tick's percept of robot number `own`, which is at `here`.
     ///
     /// Of what is heard in a tick, one message's obstacle points are learned: walls stand still, and a tick has its time.
@@ -62,7 +74,6 @@ impl<S: Scalar> Knowledge<S> {
     /// otherwise take itself for a neighbour that it must keep away from.
     pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u8) {
         let here = millimetres(here);
-        let heard = || percept.heard.iter().filter(|message| message.sender != own);
         self.grow_older(here);
         for sighting in &percept.targets {
             self.see_target(*sighting);
@@ -70,28 +81,37 @@ impl<S: Scalar> Knowledge<S> {
         for &position in &percept.obstacles {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
         }
-        for message in heard() {
+        let mut own_messages = 0;
+        for message in &percept.heard {
+            if message.sender == own {
+                own_messages += 1;
+                continue;
+            }
             if let Some(report) = &message.target {
                 self.hear_of_target(report);
             }
             self.neighbours.meet(message.sender, message.position, here, self.tick);
         }
-        for report in self.chosen(heard()).into_iter().flat_map(|message| &message.obstacles) {
+        let turn = self.whose_turn(percept.heard.len() - own_messages);
+        let chosen = match own_messages {
+            0 => percept.heard.get(turn),
+            _ => percept.heard.iter().filter(|message| message.sender != own).nth(turn),
+        };
+        for report in chosen.into_iter().flat_map(|message| &message.obstacles) {
             self.obstacles.learn(report);
         }
         self.obstacles.settle();
     }
 
-    /// The message whose obstacle points are learned.
+    /// Which one of so many messages has its obstacle points learned.
     ///
     /// Robots speak periodically, so the same ones are heard together again and again, and each repeats its points with a
     /// period of its own. If the choice were periodic too, the periods could match and some points would never be learned.
     /// Multiples of the golden ratio, modulo 1, are spread evenly and have no period.
-    fn chosen<'m>(&self, mut heard: impl Iterator<Item = &'m Message> + Clone) -> Option<&'m Message> {
+    fn whose_turn(&self, messages: usize) -> usize {
         const GOLDEN_RATIO_Q32: u32 = 0x9e37_79b9;
         let share = (self.tick / BROADCAST_PERIOD).wrapping_mul(GOLDEN_RATIO_Q32);
-        let count = heard.clone().count() as u64;
-        heard.nth(((u64::from(share) * count) >> u32::BITS) as usize)
+        ((u64::from(share) * messages as u64) >> u32::BITS) as usize
     }
 
     fn grow_older(&mut self, here: Millimetres) {
@@ -101,11 +121,13 @@ impl<S: Scalar> Knowledge<S> {
         }
         self.tick = self.tick.wrapping_add(1);
         let tick = S::from_ratio(1, i32::from(TICKS_PER_SECOND));
+        let mut oldest = 0;
         for target in &mut self.targets {
             target.age = target.age.saturating_add(1);
             target.position = target.position + target.velocity * tick;
+            oldest = oldest.max(target.age);
         }
-        if self.targets.iter().any(|target| target.age > FORGET_TARGET_TICKS) {
+        if oldest > FORGET_TARGET_TICKS {
             self.targets.retain(|target| target.age <= FORGET_TARGET_TICKS);
         }
     }

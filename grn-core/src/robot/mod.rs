@@ -4,6 +4,7 @@
 //! Everything that crosses the controller's border is made of integers in stated units, so that a percept can be
 //! recorded, sent over a wire and replayed bit for bit, and a robot without a floating-point unit needs none.
 
+mod avoidance;
 pub mod controller;
 mod drive;
 pub mod epuck2;

@@ -13,6 +13,10 @@ pub const MAX_NEIGHBOURS: usize = 8;
 /// A neighbour not heard for so many ticks, 1 s, is forgotten.
 const FORGET_TICKS: u32 = TICKS_PER_SECOND as u32;
 
+/// A neighbour at this distance, 130 mm squared, may be felt: two radii and the push's range, 100 mm, and a little way for
+/// both since it was heard.
+const CLOSE: u32 = 130 * 130;
+
 /// Another robot nearby.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbour<S> {
@@ -23,6 +27,13 @@ pub struct Neighbour<S> {
     square: u32,
     /// The tick.
     heard: u32,
+}
+
+impl<S> Neighbour<S> {
+    /// Whether it can be what the proximity sensors feel.
+    pub fn was_close(&self) -> bool {
+        self.square < CLOSE
+    }
 }
 
 /// The known neighbours. Several are heard in a tick, most of them known already.

@@ -14,6 +14,9 @@ pub const MAX_OBSTACLES: usize = 16;
 const FORGET_UNITS: u8 = 40;
 /// How far a robot may get from where distances were measured, with its noise, before they mislead, millimetres.
 const SLACK: u32 = 50;
+/// A wall whose nearest known point is at this distance, 120 mm squared, may be felt: it is within 65 mm, and points on it
+/// are told some way apart.
+const CLOSE: u32 = 120 * 120;
 /// The side of a square that keeps one point: 2^5 mm.
 const CELL_LOG2: u32 = 5;
 /// Places to look first, several times as many as points.
@@ -35,6 +38,8 @@ pub struct ObstacleMap<S> {
     here: Millimetres,
     farthest: usize,
     largest: u32,
+    /// How far from `here` the nearest is, squared, mm², as of the last [`settle`](Self::settle).
+    nearest: u32,
     /// Points came since it was found out which ones are near.
     stale: bool,
 }
@@ -49,6 +54,7 @@ impl<S: Scalar> ObstacleMap<S> {
             here: Millimetres::default(),
             farthest: 0,
             largest: 0,
+            nearest: u32::MAX,
             stale: false,
         }
     }
@@ -60,6 +66,11 @@ impl<S: Scalar> ObstacleMap<S> {
     /// Those, in metres, of which one is the nearest, as of the last [`settle`](Self::settle).
     pub fn near(&self) -> &[Point<S>] {
         &self.near
+    }
+
+    /// Whether one of them can be on what the proximity sensors feel.
+    pub fn is_close(&self) -> bool {
+        self.nearest < CLOSE
     }
 
     /// Counts one unit of age, and measures distances from `here` from now on.
@@ -106,8 +117,8 @@ impl<S: Scalar> ObstacleMap<S> {
             return;
         }
         self.stale = false;
-        let nearest = self.squares.iter().copied().min().unwrap_or(0);
-        let limit = (nearest.isqrt() + 2 * SLACK).saturating_pow(2);
+        self.nearest = self.squares.iter().copied().min().unwrap_or(u32::MAX);
+        let limit = (self.nearest.isqrt() + 2 * SLACK).saturating_pow(2);
         let near = self.known.iter().zip(&self.squares).filter(|&(_, &square)| square <= limit);
         self.near = filled(near.map(|(known, _)| metres(known.position)));
     }

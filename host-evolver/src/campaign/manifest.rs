@@ -1,7 +1,7 @@
 //! What a campaign's folder answers for besides its units: tables and figures, and how many seeds they tell of.
 
 use super::plan::Plan;
-use crate::files::{self, Contents, FileError, Ledger};
+use crate::files::{self, Contents, FileError, Ledger, Owner};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -36,6 +36,11 @@ impl Manifest {
             finished: false,
             files,
         };
+        if files::owner(folder) == Some(Owner::Run) {
+            let fault =
+                "is the folder of a run of grn evolve, and this is a campaign; choose another folder with --out";
+            return Err(FileError::new(folder, fault));
+        }
         let manifest = if path.exists() {
             let found = read(&path)?;
             if found.seeds > plan.seeds {

@@ -138,18 +138,31 @@ impl Campaign {
         runs as u64 + trials + models * self.plan.scenarios.len() as u64
     }
 
-    /// Takes over the units of another folder that are missing here. Returns how many runs.
+    /// Whether runs of another folder can be taken over into `folder`: before it is made, and before others are copied.
+    ///
+    /// # Errors
+    /// No campaign's folder, the campaign's own, one that somebody writes, or a run there that was made from something else.
+    pub fn check_merge(plan: &Plan, folder: &Path, other: &Path) -> Result<(), FileError> {
+        let refused = |fault: &str| Err(FileError::new(other, format!("{fault}; name another with --merge")));
+        if !other.is_dir() {
+            return refused("there is no such folder");
+        }
+        if other.canonicalize().ok() == folder.canonicalize().ok() {
+            return refused("is the campaign's own folder");
+        }
+        if !other.join("runs").is_dir() {
+            return refused("no campaign is in this folder");
+        }
+        FolderLock::check_free(other)?;
+        Unit::all(plan).into_iter().try_for_each(|unit| unit.find(plan, other).map(drop))
+    }
+
+    /// Takes over the units of another folder that are missing here, after [`check_merge`](Self::check_merge). Returns how
+    /// many runs.
     ///
     /// # Errors
     /// A folder that somebody writes, a run there that was made from something else, or a file that cannot be copied.
     pub fn merge(&self, other: &Path, listener: &dyn Listener) -> Result<usize, FileError> {
-        let resolved = |folder: &Path| folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-        if resolved(other) == resolved(self.folder()) {
-            return Err(FileError::new(other, "is the campaign's own folder; name another with --merge"));
-        }
-        if !other.join("runs").is_dir() {
-            return Err(FileError::new(other, "no campaign is in this folder; name another with --merge"));
-        }
         FolderLock::check_free(other)?;
         let mut taken = 0;
         for unit in Unit::all(&self.plan) {

@@ -34,12 +34,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let plan = Plan::load(&arguments.file)?;
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
+    arguments.merge.iter().try_for_each(|other| Campaign::check_merge(&plan, &folder, other))?;
     let campaign = Campaign::begin(plan, &folder, &this_command())?;
     let progress = Progress::new(campaign.work());
     for other in &arguments.merge {
-        if !other.is_dir() {
-            return Err(Failure::Input(format!("--merge {}: there is no such folder", other.display())));
-        }
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }

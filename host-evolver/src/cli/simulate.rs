@@ -4,7 +4,7 @@ use super::{Answer, Failure, about, interrupt, options, output, progress, this_c
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
-use crate::files::{self, Contents, FolderLock, read_blob};
+use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
 use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
@@ -14,6 +14,7 @@ use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
 use serde_json::json;
+use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -82,6 +83,9 @@ enum Target {
     Qemu,
 }
 
+/// What may be in the folder of `--out`.
+const FILES: [&str; 4] = ["metrics.json", "trace.bin", "trace.csv", "trace.svg"];
+
 /// Where `cargo xtask target` leaves images.
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
 
@@ -103,9 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let lock = arguments.out.as_deref().map(take).transpose()?;
     let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
     if let Some(lock) = &lock {
-        for (name, content) in files(&simulation, &scenario, &blob)? {
-            files::write(&lock.folder().join(name), content)?;
-        }
+        keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
     }
     if arguments.json {
         output::product_json(&metrics_json(&simulation))?;
@@ -229,7 +231,23 @@ fn take(folder: &Path) -> Result<FolderLock, Failure> {
             "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
         return Err(about(manifest.display())(fault));
     }
-    Ok(FolderLock::take(folder, &this_command())?)
+    let lock = FolderLock::take(folder, &this_command())?;
+    FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
+    Ok(lock)
+}
+
+/// Writes the files of a run, and removes those of an earlier one that this one has not.
+fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
+    files::write_together(contents.iter().map(|(name, content)| (folder.join(name), content.as_slice())))?;
+    for stale in FILES.iter().filter(|name| !contents.contains_key(**name)).map(|name| folder.join(name)) {
+        match std::fs::remove_file(&stale) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(FileError::from_system(stale, "removed", error));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 fn metrics_json(simulation: &Simulation) -> serde_json::Value {

@@ -53,7 +53,35 @@ pub fn probe(path: &Path) -> Result<(), FileError> {
     attempt().map_err(|error| FileError::from_system(path, "written", error))
 }
 
+/// Writes several files that belong together: the first is replaced after all have been written under temporary names, so a
+/// full disk, or a folder in the place of one of them, leaves the old ones as they were.
+///
+/// # Errors
+/// What the operating system says, with the path.
+pub fn write_together<'c>(files: impl IntoIterator<Item = (PathBuf, &'c [u8])>) -> Result<(), FileError> {
+    let mut written = Vec::new();
+    let mut streams = Vec::new();
+    for (path, content) in files {
+        let attempt = || match destination(&path)? {
+            Destination::File(file, old) => Ok(Some((temporary_with(&file, old.as_ref(), content)?, file))),
+            Destination::Stream => Ok(None),
+        };
+        match attempt().map_err(|error| FileError::from_system(&path, "written", error))? {
+            Some(file) => written.push(file),
+            None => streams.push((path, content)),
+        }
+    }
+    for (temporary, path) in written {
+        temporary.persist(&path).map_err(|error| FileError::from_system(&path, "written", error.error))?;
+    }
+    streams.into_iter().try_for_each(|(path, content)| write(&path, content))
+}
+
 fn destination(path: &Path) -> io::Result<Destination> {
+    if names_a_folder(path) && !path.exists() {
+        let fault = "it names a folder; add the name of a file";
+        return Err(io::Error::new(ErrorKind::IsADirectory, fault));
+    }
     match std::fs::metadata(path) {
         Ok(found) if found.is_dir() => Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder")),
         Ok(found) if found.is_file() => {
@@ -105,6 +133,12 @@ fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::new(ErrorKind::InvalidInput, "its links lead in a circle"))
 }
 
+/// Whether a path ends with `/` or `/.`, which the standard library leaves out where it takes paths apart.
+fn names_a_folder(path: &Path) -> bool {
+    let text = path.as_os_str().as_encoded_bytes();
+    text.strip_suffix(b".").unwrap_or(text).last().is_some_and(|&last| std::path::is_separator(last.into()))
+}
+
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
@@ -114,6 +148,12 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
 }
 
 fn replace(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
+    temporary_with(path, old, content)?.persist(path).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// A file beside `path` with the content and the permissions that it is to have.
+fn temporary_with(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<tempfile::NamedTempFile> {
     let folder = folder_of(path);
     std::fs::create_dir_all(folder)?;
     let mut file = temporary(folder)?;
@@ -122,8 +162,7 @@ fn replace(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()
     if let Some(permissions) = old.map(Metadata::permissions).or_else(usual_permissions) {
         file.as_file().set_permissions(permissions)?;
     }
-    file.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    Ok(file)
 }
 
 /// Temporary files are private; results are for everybody.

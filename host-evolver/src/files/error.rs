@@ -32,8 +32,20 @@ impl FileError {
 
     /// The operating system refused what was to be `done`: `written`, `read`.
     pub fn from_system(path: impl Into<PathBuf>, done: &str, source: io::Error) -> Self {
+        let source = with_way_out(source);
         FileError { path: path.into(), fault: format!("cannot be {done}"), source: Some(source), is_damage: false }
     }
+}
+
+/// What the user may do about it, where that is not plain.
+fn with_way_out(error: io::Error) -> io::Error {
+    let way_out = match error.kind() {
+        io::ErrorKind::PermissionDenied => "change its permissions, or name another place",
+        io::ErrorKind::ReadOnlyFilesystem => "name a place on a disk that can be written",
+        io::ErrorKind::NotADirectory => "a part of its path is no folder; name another place",
+        _ => return error,
+    };
+    io::Error::new(error.kind(), format!("{error}; {way_out}"))
 }
 
 impl From<InputError> for FileError {

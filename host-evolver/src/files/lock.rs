@@ -4,6 +4,7 @@
 //! file says who holds it; alone it means nothing.
 
 use super::error::FileError;
+use super::owner::check_place;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -29,9 +30,12 @@ impl FolderLock {
     /// Makes the folder if there is none, and locks it for `command`, which others are told if they want it meanwhile.
     ///
     /// # Errors
-    /// A folder that somebody else holds, or that cannot be written.
+    /// What is no folder, a folder that somebody else holds, that a run or campaign further up fills, or that cannot be
+    /// written.
     pub fn take(folder: &Path, command: &str) -> Result<FolderLock, FileError> {
         let cannot = |error| FileError::from_system(folder, "written", error);
+        check_is_folder(folder)?;
+        check_place(folder)?;
         let folder_is_new = !folder.exists();
         std::fs::create_dir_all(folder).map_err(cannot)?;
         let path = folder.join(LOCK);
@@ -81,6 +85,19 @@ impl Drop for FolderLock {
             let _ = std::fs::remove_dir(&self.folder);
         }
     }
+}
+
+fn check_is_folder(path: &Path) -> Result<(), FileError> {
+    let Ok(found) = path.symlink_metadata() else { return Ok(()) };
+    let what = match path.metadata() {
+        Ok(found) if found.is_dir() => return Ok(()),
+        Ok(found) if found.is_file() => "a file",
+        Ok(_) => "a device, pipe or socket",
+        Err(_) if found.is_symlink() => "a link that leads to nothing",
+        // Whoever makes or opens it will say what is wrong.
+        Err(_) => return Ok(()),
+    };
+    Err(FileError::new(path, format!("cannot be written: it is {what} and no folder; choose a folder with --out")))
 }
 
 fn open(path: &Path) -> io::Result<File> {

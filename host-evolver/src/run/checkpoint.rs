@@ -41,9 +41,9 @@ pub(super) fn save(path: &Path, identity: &str, state: &State) -> Result<(), Fil
 /// A file that is not what was saved, of another run, or beyond the budget.
 pub(super) fn load(path: &Path, identity: &str, settings: &Settings) -> Result<State, FileError> {
     let refused = |fault: &str| FileError::new(path, format!("{fault}; {WAY_OUT}"));
-    let text = files::read_text(path)?;
+    let bytes = std::fs::read(path).map_err(|error| FileError::from_system(path, "read", error))?;
     let damaged = |error| refused(&format!("damaged: {error}"));
-    let Checkpoint { sha256, state } = serde_json::from_str(&text).map_err(damaged)?;
+    let Checkpoint { sha256, state } = serde_json::from_slice(&bytes).map_err(damaged)?;
     check(&state, settings).map_err(|fault| refused(&format!("damaged: {fault}")))?;
     if sha256 != digest(identity, &state) {
         return Err(refused("damaged, or of another run: its SHA-256 is not that of its content in this run"));

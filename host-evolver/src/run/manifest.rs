@@ -1,7 +1,7 @@
 //! What a run was made from, and which files it has left.
 
 use crate::evolve::Settings;
-use crate::files::{self, FileError, Ledger};
+use crate::files::{self, FileError, Ledger, Owner};
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::FORMAT_VERSION;
 use serde::{Deserialize, Serialize};
@@ -59,6 +59,11 @@ impl Manifest {
     /// A damaged manifest, or the difference by name with both values.
     pub(super) fn matching(&self, folder: &Path) -> Result<Manifest, FileError> {
         let path = folder.join(MANIFEST);
+        if files::owner(folder) == Some(Owner::Campaign) {
+            let fault =
+                "is the folder of a campaign, and this is a run of grn evolve; choose another folder with --out";
+            return Err(FileError::new(folder, fault));
+        }
         files::check_version(&path)?;
         let found: Manifest = files::read_json(&path)?;
         let mut ours = Manifest { finished: found.finished, files: found.files.clone(), ..self.clone() };

@@ -1,0 +1,175 @@
+//! Keeping away from what the proximity sensors feel, and going around it where no map knows it.
+//!
+//! What is close pushes the robot away. The motion law knows live neighbours and walls and keeps away from them by itself,
+//! so the push only has to stop the robot. It knows nothing of a robot that broke down, or of a box that somebody left
+//! there: push and wanted velocity could cancel out in front of it, and the robot would stand there for good. So there the
+//! push is turned to one side, and the robot slides past.
+
+use super::drive::unit;
+use super::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
+use super::knowledge::Knowledge;
+use crate::geometry::{Point, Vector};
+use crate::scalar::Scalar;
+
+/// (cos, sin) of the proximity sensors' bearings in units of 2^-14, in the percept's order.
+const SENSOR_DIRECTIONS: [(i16, i16); PROXIMITY_SENSORS] = [
+    (15_668, -4_790),
+    (10_531, -12_551),
+    (0, -16_384),
+    (-14_189, -8_192),
+    (-14_189, 8_192),
+    (0, 16_384),
+    (10_531, 12_551),
+    (15_668, 4_790),
+];
+
+/// Free distance, in 0.1 mm, below which something pushes. Less than the 5 cm that sensors reach: robots side by side on a
+/// crowded ring would push each other off it, because eight rays do not feel the same on both sides.
+const PUSH_RANGE: i32 = 300;
+
+/// A robot goes around an obstacle on one side until nothing has been in its way for so many ticks, 1 s, or the way there is
+/// far shorter on the other side, where it points past the obstacle by more than 63° (tan⁻¹ 2). If it chose anew in every
+/// tick, it would go to and fro between two obstacles that stand side by side.
+const KEEP_SIDE_TICKS: u8 = TICKS_PER_SECOND as u8;
+
+/// On which side the robot goes around something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Side {
+    Left,
+    Right,
+}
+
+impl Side {
+    fn other(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+}
+
+/// The state of avoidance.
+#[derive(Clone, Debug)]
+pub struct Avoidance<S> {
+    /// The push of one sensor that touches something, m/s.
+    strength: S,
+    side: Side,
+    /// For how many more ticks the side stands.
+    kept: u8,
+}
+
+impl<S: Scalar> Avoidance<S> {
+    /// Pushes up to `cruise`, metres per second, for each sensor: as fast as the robot may want to drive.
+    pub fn new(cruise: S) -> Self {
+        Avoidance { strength: cruise, side: Side::Left, kept: 0 }
+    }
+
+    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`.
+    pub fn velocity(
+        &mut self,
+        wanted: Vector<S>,
+        proximity: &[u16; PROXIMITY_SENSORS],
+        heading: Vector<S>,
+        here: Point<S>,
+        knowledge: &Knowledge<S>,
+    ) -> Vector<S> {
+        let push = self.push(proximity, heading);
+        let against = push.dot(wanted);
+        if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
+            self.kept = self.kept.saturating_sub(1);
+            return wanted + push;
+        }
+        self.around(wanted, push, against)
+    }
+
+    /// The velocity around what pushes; `against` = push · wanted. Seldom needed, so it stays out of the usual tick's way.
+    fn around(&mut self, wanted: Vector<S>, push: Vector<S>, against: S) -> Vector<S> {
+        // How much of the wanted velocity leads to the left: the robot looks against the push.
+        let to_left = wanted.cross(push);
+        let opposed = match self.side {
+            Side::Left => -to_left,
+            Side::Right => to_left,
+        };
+        if opposed > -against - against || (self.kept == 0 && opposed > S::ZERO) {
+            self.side = self.side.other();
+        }
+        self.kept = KEEP_SIDE_TICKS;
+        let aside = match self.side {
+            Side::Left => -push.turned_left(),
+            Side::Right => push.turned_left(),
+        };
+        // What leads to the other side is left out: it would hold the robot back.
+        let along = wanted.dot(aside);
+        let held_back = if along < S::ZERO { aside * (along / aside.dot(aside)) } else { Vector::ZERO };
+        wanted - held_back + push + aside
+    }
+
+    /// A velocity away from what the proximity sensors feel.
+    ///
+    /// A sensor with free distance r in front of it, r below R = [`PUSH_RANGE`], pushes with (1 - r/R)².
+    fn push(&self, proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>) -> Vector<S> {
+        let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < PUSH_RANGE);
+        felt.fold(Vector::ZERO, |sum, (&distance, (cos, sin))| {
+            let closeness = S::from_ratio(PUSH_RANGE - i32::from(distance), PUSH_RANGE);
+            let direction = heading * unit::<S>(cos) + heading.turned_left() * unit::<S>(sin);
+            sum - direction * (self.strength * closeness * closeness)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::epuck2::PROXIMITY_BEARINGS_DEG;
+
+    const FREE: [u16; 8] = [u16::MAX; 8];
+    const NORTH: Vector<f32> = Vector::new(0.0, 1.0);
+
+    #[test]
+    fn sensor_directions_are_those_of_the_bearings() {
+        for (bearing, (cos, sin)) in PROXIMITY_BEARINGS_DEG.into_iter().zip(SENSOR_DIRECTIONS) {
+            let (s, c) = libm::sincos(f64::from(bearing).to_radians());
+            assert_eq!((libm::round(c * 16384.0) as i16, libm::round(s * 16384.0) as i16), (cos, sin));
+        }
+    }
+
+    #[test]
+    fn the_push_points_away() {
+        let avoidance = Avoidance::new(0.1);
+        assert_eq!(avoidance.push(&FREE, NORTH), Vector::ZERO);
+        let push = avoidance.push(&[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX], NORTH);
+        assert!((push.x + 0.1).abs() < 1e-4 && push.y.abs() < 1e-6, "right sensor of a northbound robot: {push:?}");
+    }
+
+    /// The velocity of a northbound robot that wants this velocity and feels this in front, left and right.
+    fn velocity(avoidance: &mut Avoidance<f32>, wanted: Vector<f32>, [left, right]: [u16; 2]) -> Vector<f32> {
+        let mut proximity = FREE;
+        (proximity[7], proximity[0]) = (left, right);
+        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new())
+    }
+
+    #[test]
+    fn one_side_is_kept_around_what_no_map_knows() {
+        let mut avoidance = Avoidance::new(0.1);
+        let east = velocity(&mut avoidance, Vector::new(0.01, 0.1), [100, 100]);
+        assert!(east.x > 0.05, "{east:?}");
+        // A little to the other side now, but it stays on its way.
+        for _ in 0..100 {
+            let east = velocity(&mut avoidance, Vector::new(-0.01, 0.1), [100, 100]);
+            assert!(east.x > 0.05, "{east:?}");
+        }
+        // After a second with nothing in the way it may choose anew.
+        for _ in 0..31 {
+            velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2]);
+        }
+        assert!(velocity(&mut avoidance.clone(), Vector::new(-0.01, 0.1), [100, 100]).x > 0.05);
+        velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2]);
+        assert!(velocity(&mut avoidance, Vector::new(-0.01, 0.1), [100, 100]).x < -0.05);
+    }
+
+    #[test]
+    fn what_is_behind_only_pushes() {
+        let south = velocity(&mut Avoidance::new(0.1), NORTH * -0.1, [100, 100]);
+        assert!(south.x.abs() < 1e-4 && south.y < -0.15, "{south:?}");
+    }
+}

@@ -9,7 +9,11 @@ fn metrics_name_version_commit_blob_number_type_and_every_condition() -> Outcome
     let scratch = tempfile::tempdir()?;
     let folder = scratch.path().join("out");
     let mut command = grn();
-    command.arg("simulate").arg(model()).arg(channel()).args(["--number", "q8.24", "--speed", "0.1", "--json", "--out"]);
+    command
+        .arg("simulate")
+        .arg(model())
+        .arg(channel())
+        .args(["--number", "q8.24", "--speed", "0.1", "--json", "--out"]);
     let output = command.arg(&folder).output()?;
     let printed: serde_json::Value = serde_json::from_slice(&output.stdout)?;
     let written: serde_json::Value = serde_json::from_slice(&std::fs::read(folder.join("metrics.json"))?)?;

@@ -40,8 +40,8 @@ pub fn simulate(
     let emulated = (0..emulation.robots).map(|robot| emulation.start(robot, sockets.path(), blob, number));
     let emulated = emulated.collect::<Result<Vec<_>, _>>()?;
     match number {
-        NumberType::F32 => run(blob, scenario, config, mixed(emulated, native::<f32>(blob)?), watch),
-        NumberType::Q8_24 => run(blob, scenario, config, mixed(emulated, native::<Q8_24>(blob)?), watch),
+        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), watch),
+        NumberType::Q8_24 => run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), watch),
     }
 }
 

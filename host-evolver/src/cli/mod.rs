@@ -26,7 +26,7 @@ use std::process::ExitCode;
 
 /// Evolve gene-regulatory-network controllers for robot swarms, prove them in simulation, look at them.
 #[derive(Parser)]
-#[command(name = "grn", version, after_help = EXIT_CODES)]
+#[command(name = "grn", version = crate::files::VERSION, after_help = EXIT_CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

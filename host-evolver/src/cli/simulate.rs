@@ -110,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
     }
     if arguments.json {
-        output::product_json(&as_json(&simulation, arguments.number))?;
+        output::product_json(&metrics_json(&simulation))?;
     } else {
         output::report(table(&simulation));
     }
@@ -150,7 +150,9 @@ fn robots(text: &str) -> Result<usize, String> {
 
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
-    swarm::check(scenario, config).map_err(|error| match error.field {
+    let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
+    fits.map_err(|error| match error.field {
+        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value, error.expected)),
         "scale" | "robots" => {
             let [east, north] = scenario.region();
             let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
@@ -206,10 +208,9 @@ fn with_progress(
 
 /// Trace, metrics and picture of a run, by the names of their files.
 pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let number = None;
     let mut csv = Vec::new();
     simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, number))? + "\n";
+    let metrics = serde_json::to_string_pretty(&metrics_json(simulation))? + "\n";
     let mut contents = Contents::from([
         ("trace.bin".into(), simulation.trace.encode()),
         ("trace.csv".into(), csv),
@@ -249,17 +250,17 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     Ok(())
 }
 
-fn as_json(simulation: &Simulation, number: NumberType) -> serde_json::Value {
-    metrics_json(simulation, Some(number))
-}
-
-fn metrics_json(simulation: &Simulation, number: Option<NumberType>) -> serde_json::Value {
+fn metrics_json(simulation: &Simulation) -> serde_json::Value {
+    let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
     json!({
+        "grn": files::VERSION,
+        "blob": identity,
+        "number": simulation.number,
         "scenario": simulation.trace.header().scenario,
-        "seed": simulation.trace.header().seed,
-        "robots": simulation.trace.header().robots,
-        "scale": simulation.trace.header().scale,
-        "number": number,
+        "seed": simulation.config.seed,
+        "robots": simulation.config.robots,
+        "scale": simulation.config.scale,
+        "swarm": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

@@ -1,28 +1,33 @@
-//! Tells the program which commit it is built from.
+//! Tells the program its version with the commit it was built from, so that results can be traced to their source.
 
-use std::path::Path;
 use std::process::Command;
 
-/// The first line that git prints, if there is git, a checkout, and this crate is in it.
-fn git(arguments: &[&str]) -> Option<String> {
-    let output = Command::new("git").args(arguments).output().ok().filter(|output| output.status.success())?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    text.lines().next().filter(|line| !line.is_empty()).map(str::to_owned)
-}
+/// What a build depends on: a change there is a change of the program.
+const SOURCES: [&str; 4] = ["../grn-core", "../crates", "../firmware-sim", "../host-evolver"];
 
 fn main() {
-    println!("cargo::rerun-if-changed=build.rs");
-    // A package that was unpacked below somebody else's checkout does not have that one's commit.
-    let is_tracked = git(&["ls-files", "Cargo.toml"]).is_some();
-    let commit = git(&["rev-parse", "--short=12", "HEAD"]).filter(|_| is_tracked);
-    if commit.is_some() {
-        let branch = git(&["symbolic-ref", "--quiet", "HEAD"]).unwrap_or_default();
-        for name in ["HEAD", "logs/HEAD", &branch].into_iter().filter(|name| !name.is_empty()) {
-            // Cargo would build again and again for a file that does not exist.
-            if let Some(path) = git(&["rev-parse", "--git-path", name]).filter(|path| Path::new(path).exists()) {
-                println!("cargo::rerun-if-changed={path}");
-            }
-        }
+    let version = env!("CARGO_PKG_VERSION");
+    println!("cargo:rustc-env=GRN_VERSION={version} ({})", commit().unwrap_or_else(|| "unknown commit".into()));
+}
+
+/// The commit that the sources are of, marked if they were changed since; `None` outside this repository.
+fn commit() -> Option<String> {
+    let in_packet = std::fs::read_to_string(".cargo_vcs_info.json").ok();
+    if let Some(sha1) = in_packet.as_deref().and_then(|info| info.split("\"sha1\": \"").nth(1)) {
+        return sha1.get(..12).map(String::from);
     }
-    println!("cargo::rustc-env=GRN_COMMIT={}", commit.as_deref().unwrap_or("unknown"));
+    // Whoever unpacked the sources inside a repository of their own did not commit them there.
+    if !std::path::Path::new("../.git").exists() {
+        return None;
+    }
+    let commit = git(&["rev-parse", "--short=12", "HEAD"])?;
+    println!("cargo:rerun-if-changed={}", git(&["rev-parse", "--git-path", "logs/HEAD"])?);
+    SOURCES.iter().for_each(|source| println!("cargo:rerun-if-changed={source}"));
+    let changed = git(&[&["status", "--porcelain", "--"], &SOURCES[..]].concat())?;
+    Some(if changed.is_empty() { commit } else { format!("{commit}, modified") })
+}
+
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }

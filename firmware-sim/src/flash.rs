@@ -77,7 +77,7 @@ impl SimulatedFlash {
         self.steps
     }
 
-    /// The power will fail in the step after so many more.
+    /// Power will fail in the step that follows this many further ones.
     #[must_use]
     pub fn failing_after(self, steps: u64) -> Self {
         SimulatedFlash { steps_left: Some(steps), ..self }

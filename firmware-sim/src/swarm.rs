@@ -28,10 +28,6 @@ use grn_core::robot::epuck2::{MAX_WHEEL_SPEED, TICKS_PER_SECOND};
 /// The farthest coordinate a percept and a message can tell, metres.
 const MAX_COORDINATE: f64 = 32.767;
 
-/// The most places in a trace, of robots and targets in all ticks together. A run of that many takes about a minute, 270 MB
-/// of memory, and three times as much for its table as text.
-pub const MAX_TRACE_PLACES: u64 = 1 << 24;
-
 /// How far a run has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
@@ -133,7 +129,6 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
             ),
         });
     }
-    check_length(&world, config)?;
     let poses = placement::scattered(&world, config.robots, config.seed).ok_or_else(|| ConfigError {
         field: "robots",
         value: config.robots.to_string(),
@@ -145,38 +140,13 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
     Ok((world, poses))
 }
 
-/// Whether a run until all targets have arrived stays below [`MAX_TRACE_PLACES`].
-fn check_length(world: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
-    let path = world.longest_path();
-    let places = (config.robots + world.paths().len()) as f64;
-    let most_s = MAX_TRACE_PLACES as f64 / places / f64::from(TICKS_PER_SECOND);
-    let travel_s = path / config.target_speed_m_per_s;
-    if config.settle_s + travel_s <= most_s {
-        return Ok(());
-    }
-    if config.settle_s >= most_s {
-        let expected = format!("a run of {} robots may last {most_s:.0} s, its end included", config.robots);
-        return Err(ConfigError { field: "settle_s", value: config.settle_s.to_string(), expected });
-    }
-    let slowest = path / (most_s - config.settle_s);
-    Err(ConfigError {
-        field: "target_speed_m_per_s",
-        value: format!("{:?}", config.target_speed_m_per_s),
-        expected: format!(
-            "the target's path of {path:.1} m takes {travel_s:.0} s at this speed, but a run of {} robots may last {most_s:.0} s; \
-             a speed of at least {slowest:.2e} m/s is possible",
-            config.robots
-        ),
-    })
-}
-
 impl<B: Brain> Swarm<B> {
     /// The scenario's world at the configured scale, with robots at random places behind the first target's start, each
     /// with the brain that `brain` gives for its number.
     ///
     /// # Errors
-    /// [`ConfigError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m, the
-    /// targets are so slow that a run would have more than [`MAX_TRACE_PLACES`], or the robots find no room.
+    /// [`ConfigError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m, or
+    /// the robots find no room.
     pub fn new(
         scenario: &Scenario,
         config: SwarmConfig,

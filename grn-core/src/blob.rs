@@ -27,7 +27,7 @@ const HEADER: usize = MAGIC.len() + 1 + 2 + IDENTITY_BYTES;
 const CRC_BYTES: usize = 4;
 const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// The most bytes a blob of so many genes can take.
+/// The most bytes that a blob with this many genes can take.
 pub const fn max_encoded_size(genes: usize) -> usize {
     HEADER + wire::FIXED_BYTES + genes * wire::MAX_GENE_BYTES + CRC_BYTES
 }

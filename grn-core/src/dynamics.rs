@@ -8,23 +8,23 @@ use heapless::Vec;
 impl<S: Scalar, const N: usize> Network<S, N> {
     /// The level of M when inputs are held constant: one pass in topological order with y = R.
     pub fn steady_state(&self, x1: S, x2: S) -> S {
-        self.settled([x1, x2])
+        self.steady_morphogen([x1, x2])
     }
 
     /// M in the steady state and its gradient (∂M/∂x1, ∂M/∂x2).
     pub fn steady_state_gradient(&self, x1: S, x2: S) -> Dual<S> {
-        self.settled([Dual::input(x1, 0), Dual::input(x2, 1)])
+        self.steady_morphogen([Dual::input(x1, 0), Dual::input(x2, 1)])
     }
 
     /// M in the steady state for inputs (x1, x2) of any arithmetic over `S`.
-    pub fn settled<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
+    pub fn steady_morphogen<A: Arithmetic<Real = S>>(&self, x: [A; 2]) -> A {
         let mut levels = Vec::new();
-        self.settle(x, &mut levels);
+        self.steady_levels(x, &mut levels);
         levels.last().copied().unwrap_or(A::ZERO)
     }
 
     /// Puts the level of each gene in the steady state into the empty list `levels`. M is the last one.
-    pub fn settle<A: Arithmetic<Real = S>>(&self, x: [A; 2], levels: &mut Vec<A, N>) {
+    pub fn steady_levels<A: Arithmetic<Real = S>>(&self, x: [A; 2], levels: &mut Vec<A, N>) {
         self.regulate(x, levels, |levels, _, regulation| {
             // Genes are visited in order and there are at most N, so the next level always fits.
             let _ = levels.push(regulation);
@@ -70,7 +70,7 @@ impl Step {
 
     /// The step in GRN seconds.
     pub fn seconds<S: Scalar>(self) -> S {
-        S::ONE.halved(self.0)
+        S::ONE.over_power_of_two(self.0)
     }
 }
 
@@ -114,7 +114,7 @@ impl<S: Scalar, const N: usize> Expression<S, N> {
     }
 
     /// Advances by `steps` steps h of the classical Runge-Kutta method of fourth order under the inputs `x` = [x1, x2],
-    /// constant over all of them, with the genes' levels at `rest` under the same inputs ([`Network::settle`]).
+    /// constant over all of them, with the genes' levels at `rest` under the same inputs ([`Network::steady_levels`]).
     ///
     /// In Q8.24 the levels come to rest within 2^(n-24) of the steady state for h = 2^-n: smaller increments round to 0.
     ///
@@ -137,16 +137,16 @@ impl<S: Scalar, const N: usize> Expression<S, N> {
                     None => network.regulation(gene, x, &stages),
                 };
                 let k1 = r1 - *level;
-                let second = *level + k1.halved(h.0 + 1);
+                let second = *level + k1.over_power_of_two(h.0 + 1);
                 let k2 = r2 - second;
-                let third = *level + k2.halved(h.0 + 1);
+                let third = *level + k2.over_power_of_two(h.0 + 1);
                 let k3 = r3 - third;
-                let fourth = *level + k3.halved(h.0);
+                let fourth = *level + k3.over_power_of_two(h.0);
                 let k4 = r4 - fourth;
                 // Genes are visited in order and there are at most N, so the next one's stages always fit.
                 let _ = stages.push(Stages([*level, second, third, fourth]));
                 let middle = k2 + k3;
-                *level = *level + ((k1 + middle + middle + k4) * sixth).halved(h.0);
+                *level = *level + ((k1 + middle + middle + k4) * sixth).over_power_of_two(h.0);
             }
         }
     }
@@ -193,7 +193,7 @@ mod tests {
 
     fn at_rest<S: Scalar>(network: &Network<S, 8>, [x1, x2]: [S; 2]) -> heapless::Vec<Dual<S>, 8> {
         let mut rest = heapless::Vec::new();
-        network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+        network.steady_levels([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
         rest
     }
 
@@ -230,13 +230,13 @@ mod tests {
             network.regulate(x, &mut levels, |levels, gene, regulation| slopes[gene] = regulation - levels[gene]);
             slopes
         };
-        let moved = |k: [S; 3], halvings| [0, 1, 2].map(|i| levels[i] + k[i].halved(halvings));
+        let moved = |k: [S; 3], halvings| [0, 1, 2].map(|i| levels[i] + k[i].over_power_of_two(halvings));
         let k1 = slopes(levels);
         let k2 = slopes(moved(k1, h + 1));
         let k3 = slopes(moved(k2, h + 1));
         let k4 = slopes(moved(k3, h));
         let sum = |i: usize| k1[i] + (k2[i] + k3[i]) + (k2[i] + k3[i]) + k4[i];
-        [0, 1, 2].map(|i| levels[i] + (sum(i) * S::from_ratio(1, 6)).halved(h))
+        [0, 1, 2].map(|i| levels[i] + (sum(i) * S::from_ratio(1, 6)).over_power_of_two(h))
     }
 
     #[test]

@@ -18,7 +18,7 @@ impl Kernel {
     /// κ(u), in [0, 1]; a negative u is taken as 0.
     pub fn concentration<S: Scalar>(self, u: S) -> S {
         match self {
-            Kernel::Gaussian => (u * u).halved(1).exp_neg(),
+            Kernel::Gaussian => (u * u).over_power_of_two(1).exp_neg(),
             Kernel::Exponential => u.exp_neg(),
         }
     }
@@ -28,7 +28,7 @@ impl Kernel {
         let u = offset * per_width;
         match self {
             Kernel::Gaussian => {
-                let concentration = u.dot(u).halved(1).exp_neg();
+                let concentration = u.dot(u).over_power_of_two(1).exp_neg();
                 (concentration, u * -(concentration * per_width))
             }
             Kernel::Exponential => {

@@ -76,7 +76,7 @@ impl<S: Scalar> Pattern<S> {
     /// the way out, within 8 σ_t. `None` if it does not.
     pub fn free_space_radius<const N: usize>(&self, network: &Network<S, N>, field: &Field<S>) -> Option<S> {
         let inside = |r| self.is_inside(network.steady_state(field.target_concentration(r), S::ZERO));
-        let stride = field.target_width().halved(4);
+        let stride = field.target_width().over_power_of_two(4);
         let mut inner = S::ZERO;
         let mut outer = stride;
         let mut strides = 0;
@@ -89,14 +89,14 @@ impl<S: Scalar> Pattern<S> {
             outer = outer + stride;
         }
         for _ in 0..24 {
-            let middle = (inner + outer).halved(1);
+            let middle = (inner + outer).over_power_of_two(1);
             if inside(middle) {
                 inner = middle;
             } else {
                 outer = middle;
             }
         }
-        Some((inner + outer).halved(1))
+        Some((inner + outer).over_power_of_two(1))
     }
 
     /// The nearest candidate point, metres: Newton steps from `start` along the gradient of the pattern error.
@@ -131,7 +131,7 @@ impl<S: Scalar> Pattern<S> {
                 let tried = look(point + step);
                 let falls = tried.0.abs() < error.abs();
                 if !falls {
-                    step = step * S::ONE.halved(1);
+                    step = step * S::ONE.over_power_of_two(1);
                 }
                 falls.then_some(tried)
             });

@@ -168,8 +168,8 @@ pub fn json(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).map(|text| text + "\n").unwrap_or_default()
 }
 
-/// The version of this software, in every manifest.
-pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("GRN_COMMIT"), ")");
+/// The version of this software with its commit, in every manifest: `0.1.0 (1a2b3c4d5e6f)`.
+pub const VERSION: &str = env!("GRN_VERSION");
 
 /// Refuses a manifest that another version of this software has written, whatever else is in it.
 ///

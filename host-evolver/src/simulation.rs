@@ -7,10 +7,11 @@ use firmware_sim::metrics::{Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Swarm};
 use firmware_sim::trace::Trace;
-use grn_core::blob::Blob;
+use grn_core::blob::{Blob, Identity};
 use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::pattern::NoPattern;
+use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use serde::Serialize;
@@ -57,16 +58,18 @@ impl std::error::Error for SimulationError {}
 
 /// A finished run.
 pub struct Simulation {
-    /// How it was set up.
-    pub config: SwarmConfig,
-    /// The number type that the robots computed in.
-    pub number: NumberType,
     /// Every tick of it.
     pub trace: Trace,
     /// What it was worth.
     pub metrics: Metrics,
     /// Radius of the model's ring around a lone target in free space, world metres.
     pub ring_radius_m: f64,
+    /// The blob that ran.
+    pub blob: Identity,
+    /// What the robots computed in.
+    pub number: NumberType,
+    /// The swarm and its conditions.
+    pub config: SwarmConfig,
 }
 
 /// Whether a run met each of the bars for a working controller.
@@ -146,7 +149,7 @@ pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Control
     Ok(move |robot: usize| fresh.clone().on_robot(robot as u8))
 }
 
-/// [`simulate`] with any brains, which compute in `number`.
+/// [`simulate`] with any brains.
 pub(crate) fn run<B: Brain>(
     blob: &Blob,
     scenario: &Scenario,
@@ -156,7 +159,8 @@ pub(crate) fn run<B: Brain>(
     mut watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     let ruler = PatternRuler::new(blob, scenario).map_err(SimulationError::NoPattern)?;
-    let mut swarm = Swarm::new(scenario, config, brain).map_err(SimulationError::Config)?;
+    check_length(scenario, &config).map_err(SimulationError::Config)?;
+    let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
     let outcome = swarm.run(end, |progress| watch(progress.tick as f64 / progress.end.max(1) as f64));
     match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
@@ -166,8 +170,38 @@ pub(crate) fn run<B: Brain>(
     let stop_ticks = swarm.config().stop_ticks();
     let options = MetricsOptions { walls: swarm.walls(), ring_radius_m: ruler.ring_radius(), stop_ticks: &stop_ticks };
     let metrics = Metrics::of(swarm.trace(), &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
-    let config = swarm.config().clone();
-    Ok(Some(Simulation { config, number, trace: swarm.into_trace(), metrics, ring_radius_m: ruler.ring_radius() }))
+    let (ring_radius_m, blob) = (ruler.ring_radius(), blob.identity());
+    Ok(Some(Simulation { trace: swarm.into_trace(), metrics, ring_radius_m, blob, number, config }))
+}
+
+/// The most memory that the record of a run may take, bytes.
+const MOST_RECORD: f64 = 1e9;
+/// What a robot and a target take in the record of a tick, bytes: 12 positions, headings and wheels a robot, and counts.
+const RECORD_OF_ROBOT: f64 = 24.0;
+
+/// Whether the record of a whole run fits into memory: a slow target makes a long run, of which every tick is kept.
+///
+/// # Errors
+/// [`ConfigError`] that says which speed is possible.
+pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
+    let per_tick = RECORD_OF_ROBOT * (config.robots + scenario.paths().len()) as f64;
+    let most_seconds = MOST_RECORD / per_tick / f64::from(TICKS_PER_SECOND);
+    let path = scenario.longest_path() * config.scale;
+    if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
+        return Ok(());
+    }
+    let (hours, least) = (most_seconds / 3600.0, path / (most_seconds - config.settle_s));
+    // Rounded up, so that the speed that is named is possible.
+    let least = (least * 1e5).ceil() / 1e5;
+    Err(ConfigError {
+        field: "target_speed_m_per_s",
+        value: config.target_speed_m_per_s.to_string(),
+        expected: format!(
+            "the run would take longer than {hours:.0} simulated hours, the most of {} robots that fits into memory; at \
+             least {least} metres per second are needed",
+            config.robots
+        ),
+    })
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.

@@ -1,7 +1,7 @@
 //! A robot and the host that flashes and drives it in one image: how much stack does a robot take that does all it can?
 //!
 //! The robot is served as in `robot-*`, by the same function; only the port is not a serial line but [`Host`]. It is given
-//! one of the largest printed models, keeps it, is given the other, ticks in the dearest scene, keeps that, too, and goes
+//! one of the largest printed models, keeps it, is given the other, ticks in the costliest scene, keeps that, too, and goes
 //! back to the first. Then it starts once more, with a blob in charge. Lines are `what has been done, highest stack so far`:
 //! what the host itself takes counts, too, so that a robot takes a little less.
 

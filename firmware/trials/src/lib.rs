@@ -85,7 +85,7 @@ pub fn digests<S: Bits>() -> Digests {
         // A model that is not valid shows in the digest, which then lacks it.
         let Some(blob) = model(number, &mut blobs) else { continue };
         let network = blob.network.cast::<S>();
-        settle(&network, &mut steady_states);
+        steady(&network, &mut steady_states);
         integrate(&network, &mut rk4);
         run::<S>(&blob, number, TICKS, &mut commands);
     }
@@ -119,7 +119,7 @@ fn eighths<S: Bits>(eighths: u8) -> S {
     S::from_ratio(i32::from(eighths), 8)
 }
 
-fn settle<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
+fn steady<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
     for x1 in (0..=20).step_by(2) {
         for x2 in (0..=8).step_by(2) {
             let (x1, x2) = (eighths(x1), eighths(x2));
@@ -142,7 +142,7 @@ fn advance<S: Scalar, const N: usize>(
     steps: u8,
 ) {
     let mut rest = Vec::new();
-    network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+    network.steady_levels([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
     expression.advance(network, [x1, x2], &rest, h, steps);
 }
 

@@ -35,7 +35,7 @@ impl Random {
         low.wrapping_add(self.below(high.abs_diff(low).wrapping_add(1)).cast_signed())
     }
 
-    /// True once in so many times.
+    /// True with probability 1 / `times`.
     pub fn once_in(&mut self, times: u32) -> bool {
         self.below(times) == 0
     }

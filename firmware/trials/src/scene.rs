@@ -26,7 +26,7 @@ pub fn everything() -> Percept {
     }
 }
 
-/// The same with all obstacle points so many millimetres farther away.
+/// The same with all obstacle points farther north by this many millimetres.
 pub fn everything_farther(north: i16) -> Percept {
     let mut percept = everything();
     let told = percept.heard.iter_mut().flat_map(|message| &mut message.obstacles).map(|report| &mut report.position);

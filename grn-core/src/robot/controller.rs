@@ -5,7 +5,7 @@ use super::drive::{Drive, heading};
 use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
 use super::message::{BROADCAST_PERIOD, Message};
-use super::motion::{Bearing, Motion};
+use super::motion::{Motion, PatternHere};
 use super::percept::{Command, Percept, PerceptError};
 use super::position::Millimetres;
 use crate::blob::{Blob, Identity};
@@ -143,16 +143,16 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let morphogens = self.field.at(here, known, self.knowledge.obstacles());
         let Morphogens { x1, x2, .. } = morphogens;
         let mut rest = Vec::new();
-        self.network.settle([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
+        self.network.steady_levels([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
         let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
         self.expression.advance(&self.network, [x1, x2], &rest, self.step, self.steps_per_tick);
-        let bearing = Bearing {
+        let pattern_here = PatternHere {
             error: self.pattern.error(self.expression.morphogen(&self.network)),
             gradient: self.pattern.error_gradient(slopes, &morphogens),
         };
         // The pattern here is that around another target: it does not tell the way to the own one.
-        let bearing = (own.target == nearest.target).then_some(&bearing);
-        self.motion.velocity(here, bearing, &own, self.knowledge.neighbours())
+        let pattern_here = (own.target == nearest.target).then_some(&pattern_here);
+        self.motion.velocity(here, pattern_here, &own, self.knowledge.neighbours())
     }
 
     /// A robot accompanies the nearest target. Those that see several themselves share them out by their own numbers:

@@ -36,7 +36,7 @@ impl<S: Scalar> Drive<S> {
         let speed = velocity.length();
         let along = velocity.dot(heading);
         let aside = heading.cross(velocity);
-        let reluctance = speed.halved(2);
+        let reluctance = speed.over_power_of_two(2);
         if along > reluctance {
             self.backwards = false;
         } else if along < -reluctance {

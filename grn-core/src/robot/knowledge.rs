@@ -100,7 +100,7 @@ impl<S: Scalar> Knowledge<S> {
         for report in chosen.into_iter().flat_map(|message| &message.obstacles) {
             self.obstacles.learn(report);
         }
-        self.obstacles.settle();
+        self.obstacles.find_near();
     }
 
     /// Which one of so many messages has its obstacle points learned.

@@ -4,7 +4,8 @@ use super::position::Millimetres;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A robot speaks every so many ticks, a quarter of a second, each in its own turn. In that time it moves 3 cm.
+/// Ticks between two broadcasts of a robot: a quarter of a second, in which it moves 3 cm. Robots take turns by their
+/// numbers, so that they do not all broadcast in the same tick.
 pub(super) const BROADCAST_PERIOD: u32 = 8;
 /// The most obstacle points in one message.
 pub const MAX_REPORTED_OBSTACLES: usize = 4;

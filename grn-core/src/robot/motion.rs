@@ -38,7 +38,7 @@ use crate::pattern::newton_step;
 use crate::scalar::Scalar;
 
 /// What the motion law needs to know of the pattern where the robot is.
-pub struct Bearing<S> {
+pub struct PatternHere<S> {
     /// Pattern error φ from the integrated morphogen.
     pub error: S,
     /// ∇φ, 1/m.
@@ -90,17 +90,17 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// The velocity to move at, metres per second, at most the cruise speed. Without a bearing it leads to the target.
+    /// The velocity to move at, metres per second, at most the cruise speed. Without a pattern it leads to the target.
     pub fn velocity(
         &mut self,
         here: Point<S>,
-        bearing: Option<&Bearing<S>>,
+        pattern: Option<&PatternHere<S>>,
         target: &KnownTarget<S>,
         neighbours: &[Neighbour<S>],
     ) -> Vector<S> {
         let to_target = target.position - here;
-        let Way { distance, direction } = bearing
-            .and_then(|bearing| self.way_to_pattern(bearing, to_target))
+        let Way { distance, direction } = pattern
+            .and_then(|pattern| self.way_to_pattern(pattern, to_target))
             .unwrap_or_else(|| self.way_to_target(to_target));
         let to_pattern = direction * distance;
         let repulsion = self.repulsion_from(here, direction.turned_left(), neighbours);
@@ -113,14 +113,14 @@ impl<S: Scalar> Motion<S> {
 
     /// r/2: the longest Newton step that is believed.
     fn trust(&self) -> S {
-        self.ring_radius.halved(1)
+        self.ring_radius.over_power_of_two(1)
     }
 
     /// The way along the gradient of the pattern error; `None` where it does not tell the way.
-    fn way_to_pattern(&self, bearing: &Bearing<S>, to_target: Vector<S>) -> Option<Way<S>> {
-        let (distance, direction) = newton_step(bearing.error, bearing.gradient)?;
+    fn way_to_pattern(&self, pattern: &PatternHere<S>, to_target: Vector<S>) -> Option<Way<S>> {
+        let (distance, direction) = newton_step(pattern.error, pattern.gradient)?;
         let trust = self.trust();
-        let inside = bearing.error >= S::ZERO;
+        let inside = pattern.error >= S::ZERO;
         // From outside the pattern is ahead, and so must the target be.
         let believed = inside || (distance < trust && direction.dot(to_target) > S::ZERO);
         believed.then(|| Way { distance: distance.clamp(-trust, trust), direction })

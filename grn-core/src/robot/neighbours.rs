@@ -10,7 +10,7 @@ use heapless::Vec;
 /// The most neighbours kept in mind: the nearest ones.
 pub const MAX_NEIGHBOURS: usize = 8;
 
-/// A neighbour not heard for so many ticks, 1 s, is forgotten.
+/// A neighbour is forgotten when it was not heard for this many ticks, 1 s.
 const FORGET_TICKS: u32 = TICKS_PER_SECOND as u32;
 
 /// A neighbour at this distance, 130 mm squared, may be felt: two radii and the push's range, 100 mm, and a little way for
@@ -78,7 +78,7 @@ impl<S: Scalar> Neighbours<S> {
         }
     }
 
-    /// Forgets whom it has not heard for long.
+    /// Forgets neighbours that were last heard too long ago.
     pub fn forget(&mut self, now: u32) {
         let fresh = |known: &Neighbour<S>| now.wrapping_sub(known.heard) < FORGET_TICKS;
         if self.known.iter().all(fresh) {

@@ -10,7 +10,7 @@ use heapless::Vec;
 
 /// The most obstacle points kept in mind: the nearest ones.
 pub const MAX_OBSTACLES: usize = 16;
-/// An obstacle point is forgotten after so many units of age.
+/// An obstacle point is forgotten at this age, in units of 8 ticks: 10 s.
 const FORGET_UNITS: u8 = 40;
 /// How far a robot may get from where distances were measured, with its noise, before they mislead, millimetres.
 const SLACK: u32 = 50;
@@ -38,7 +38,7 @@ pub struct ObstacleMap<S> {
     here: Millimetres,
     farthest: usize,
     largest: u32,
-    /// How far from `here` the nearest is, squared, mm², as of the last [`settle`](Self::settle).
+    /// How far from `here` the nearest is, squared, mm², as of the last [`find_near`](Self::find_near).
     nearest: u32,
     /// Points came since it was found out which ones are near.
     stale: bool,
@@ -63,7 +63,7 @@ impl<S: Scalar> ObstacleMap<S> {
         &self.known
     }
 
-    /// Those, in metres, of which one is the nearest, as of the last [`settle`](Self::settle).
+    /// Those, in metres, of which one is the nearest, as of the last [`find_near`](Self::find_near).
     pub fn near(&self) -> &[Point<S>] {
         &self.near
     }
@@ -112,7 +112,7 @@ impl<S: Scalar> ObstacleMap<S> {
 
     /// Finds those that can be the nearest: every other one is more than 2 [`SLACK`] farther away from `here`, hence
     /// farther away from any place within [`SLACK`] of it.
-    pub fn settle(&mut self) {
+    pub fn find_near(&mut self) {
         if !self.stale {
             return;
         }
@@ -178,7 +178,7 @@ mod tests {
             map.learn(&told(x * 32 + 3, 3));
             map.learn(&told(x * 32 + 9, 3));
         }
-        map.settle();
+        map.find_near();
         let mut kept: std::vec::Vec<i16> = map.known().iter().map(|known| known.position.x).collect();
         kept.sort_unstable();
         assert_eq!(kept, (0..16).map(|x| x * 32 + 3).collect::<std::vec::Vec<_>>());
@@ -200,10 +200,10 @@ mod tests {
         for _ in 2..FORGET_UNITS {
             map.grow_older(here);
         }
-        map.settle();
+        map.find_near();
         assert_eq!((map.known().len(), map.near().len()), (1, 1));
         map.grow_older(here);
-        map.settle();
+        map.find_near();
         assert!(map.near().is_empty() && map.known().is_empty());
     }
 }

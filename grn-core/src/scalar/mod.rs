@@ -80,7 +80,7 @@ pub trait Scalar:
     fn square_sum(self, other: Self) -> Self::Square;
     /// `self` · 2^-`exponent`, exponent in 0..=30; exact in floating point, rounded to nearest in Q8.24.
     #[must_use]
-    fn halved(self, exponent: u8) -> Self;
+    fn over_power_of_two(self, exponent: u8) -> Self;
     /// |self|.
     #[must_use]
     fn abs(self) -> Self {
@@ -167,7 +167,7 @@ impl Scalar for f32 {
     fn square_sum(self, other: f32) -> f32 {
         self * self + other * other
     }
-    fn halved(self, exponent: u8) -> f32 {
+    fn over_power_of_two(self, exponent: u8) -> f32 {
         self * f32::from_bits((127 - u32::from(exponent.min(30))) << 23)
     }
 }
@@ -220,7 +220,7 @@ impl Scalar for f64 {
     fn square_sum(self, other: f64) -> f64 {
         self * self + other * other
     }
-    fn halved(self, exponent: u8) -> f64 {
+    fn over_power_of_two(self, exponent: u8) -> f64 {
         self * f64::from_bits((1023 - u64::from(exponent.min(30))) << 52)
     }
 }

@@ -232,7 +232,7 @@ impl Scalar for Q8_24 {
         let square = |v: Self| (i64::from(v.to_bits()) * i64::from(v.to_bits())) as u64;
         square(self) + square(other)
     }
-    fn halved(self, exponent: u8) -> Self {
+    fn over_power_of_two(self, exponent: u8) -> Self {
         match u32::from(exponent.min(30)).checked_sub(1) {
             None => self,
             Some(all_but_one) => {
@@ -297,8 +297,8 @@ mod tests {
         assert_eq!((-big / Q8_24::ZERO).to_bits(), i32::MIN);
         assert_eq!(Q8_24::ZERO / Q8_24::ZERO, Q8_24::ZERO);
         assert_eq!(Q8_24::from_bits(i32::MIN) / -Q8_24::ONE, Q8_24::from_bits(i32::MAX));
-        assert_eq!(Q8_24::from_bits(3).halved(1).to_bits(), 2);
-        assert_eq!(Q8_24::from_bits(-3).halved(1).to_bits(), -1);
+        assert_eq!(Q8_24::from_bits(3).over_power_of_two(1).to_bits(), 2);
+        assert_eq!(Q8_24::from_bits(-3).over_power_of_two(1).to_bits(), -1);
         assert_eq!(Q8_24::from_f32(f32::NAN), Q8_24::ZERO);
         assert_eq!(Q8_24::from_f32(-2.5).times_to_i32(1), -3);
         assert_eq!(Q8_24::from_f32(1.1).times_to_i32(1000), 1100);

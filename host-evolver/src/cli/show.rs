@@ -44,7 +44,7 @@ fn derived(blob: &Blob) -> Option<Derived> {
     Some(Derived { level: pattern.level(), contrast: pattern.contrast(), ring_radius_m })
 }
 
-pub fn identity(blob: &Blob) -> String {
+fn identity(blob: &Blob) -> String {
     blob.identity().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

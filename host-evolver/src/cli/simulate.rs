@@ -1,6 +1,5 @@
 //! `grn simulate`.
 
-use super::show::identity;
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
@@ -55,8 +54,7 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world, at most 0.127. Slow targets make long
-    /// runs; one of 12 robots may last 11 hours.
+    /// Speed of the target with the longest path, metres per second in the world.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
     speed: f64,
     /// Number type the robots compute in.
@@ -112,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
     }
     if arguments.json {
-        output::product_json(&metrics_json(&simulation, &scenario, &blob))?;
+        output::product_json(&metrics_json(&simulation))?;
     } else {
         output::report(table(&simulation));
     }
@@ -152,7 +150,9 @@ fn robots(text: &str) -> Result<usize, String> {
 
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
-    swarm::check(scenario, config).map_err(|error| match error.field {
+    let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
+    fits.map_err(|error| match error.field {
+        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value, error.expected)),
         "scale" | "robots" => {
             let [east, north] = scenario.region();
             let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
@@ -160,8 +160,6 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
         }
-        "target_speed_m_per_s" if config.target_speed_m_per_s == DEFAULT_SPEED => about(path.display())(error.expected),
-        "target_speed_m_per_s" => about(format_args!("--speed {}", error.value))(error.expected),
         _ => error.into(),
     })
 }
@@ -212,7 +210,7 @@ fn with_progress(
 pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
     let mut csv = Vec::new();
     simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, scenario, blob))? + "\n";
+    let metrics = serde_json::to_string_pretty(&metrics_json(simulation))? + "\n";
     let mut contents = Contents::from([
         ("trace.bin".into(), simulation.trace.encode()),
         ("trace.csv".into(), csv),
@@ -252,36 +250,17 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     Ok(())
 }
 
-/// What was run, by what, and what came out.
-fn metrics_json(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> serde_json::Value {
-    let SwarmConfig {
-        robots,
-        mothers,
-        seed,
-        scale,
-        target_speed_m_per_s,
-        settle_s,
-        variation,
-        radio,
-        noise,
-        ref stops,
-    } = simulation.config;
+fn metrics_json(simulation: &Simulation) -> serde_json::Value {
+    let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
     json!({
         "grn": files::VERSION,
-        "controller": identity(blob),
-        "scenario": scenario.name(),
-        "scenario_sha256": files::sha256(scenario.to_toml()),
-        "seed": seed,
-        "robots": robots,
-        "mothers": mothers,
-        "scale": scale,
+        "blob": identity,
         "number": simulation.number,
-        "target_speed_m_per_s": target_speed_m_per_s,
-        "settle_s": settle_s,
-        "variation": variation,
-        "radio": radio,
-        "noise": noise,
-        "stops": stops,
+        "scenario": simulation.trace.header().scenario,
+        "seed": simulation.config.seed,
+        "robots": simulation.config.robots,
+        "scale": simulation.config.scale,
+        "swarm": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

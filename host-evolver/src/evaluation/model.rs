@@ -39,7 +39,7 @@ impl Model {
 
     /// The same at eight places.
     pub(super) fn errors(&self, x1: Lanes, x2: Lanes) -> Lanes {
-        let m = self.network.settled([x1, x2]);
+        let m = self.network.steady_morphogen([x1, x2]);
         let (level, per_contrast) = (self.pattern.level(), 1.0 / self.pattern.contrast());
         (m - Lanes::splat(level)) * Lanes::splat(per_contrast)
     }

@@ -144,7 +144,16 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)
+    // The library's own way to open it wraps errors, which hides their codes and names the temporary file to the user.
+    tempfile::Builder::new().prefix(UNFINISHED).make_in(folder, create_private)
+}
+
+fn create_private(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    options.open(path)
 }
 
 fn replace(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Result<()> {
@@ -157,7 +166,7 @@ fn temporary_with(path: &Path, old: Option<&Metadata>, content: &[u8]) -> io::Re
     let folder = folder_of(path);
     std::fs::create_dir_all(folder)?;
     let mut file = temporary(folder)?;
-    file.write_all(content)?;
+    file.as_file_mut().write_all(content)?;
     file.as_file().sync_data()?;
     if let Some(permissions) = old.map(Metadata::permissions).or_else(usual_permissions) {
         file.as_file().set_permissions(permissions)?;
@@ -211,4 +220,16 @@ fn open_stream(path: &Path) -> io::Result<File> {
 #[cfg(not(unix))]
 fn open_stream(path: &Path) -> io::Result<File> {
     OpenOptions::new().append(true).open(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_of_temporary_files_keep_their_code_and_do_not_name_them() {
+        let scratch = tempfile::tempdir().unwrap();
+        let error = temporary(&scratch.path().join("missing")).unwrap_err();
+        assert!(error.raw_os_error().is_some() && !error.to_string().contains("unfinished"), "{error}");
+    }
 }

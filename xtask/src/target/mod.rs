@@ -102,7 +102,7 @@ const MEMORY_BAR: usize = 16 * 1024;
 const COST_BARS: [(&str, usize); 5] = [
     (" nand-xnor rk4-step", 1_500),
     ("-xnor tick", 10_000),
-    ("-xnor tick-dearest", 10_000),
+    ("-xnor tick-largest", 10_000),
     ("-xnor tick-all-heard-at-once", 10_000),
     ("-xnor tick-all-new-at-once", 10_000),
 ];
@@ -266,11 +266,11 @@ fn below(what: &str, size: usize, bar: usize) -> Result<(), String> {
 }
 
 fn costs_below_bars(output: &str) -> Result<(), String> {
-    let dear = output.lines().filter_map(|line| {
+    let costly = output.lines().filter_map(|line| {
         let (name, count) = line.rsplit_once(' ')?;
         let &(_, bar) = COST_BARS.iter().find(|(end, _)| name.ends_with(end))?;
         below(name, count.parse().ok()?, bar).err()
     });
-    let dear: Vec<String> = dear.collect();
-    if dear.is_empty() { Ok(()) } else { Err(dear.join("\n")) }
+    let costly: Vec<String> = costly.collect();
+    if costly.is_empty() { Ok(()) } else { Err(costly.join("\n")) }
 }

@@ -6,8 +6,8 @@
 //! | part | what it is |
 //! |---|---|
 //! | tick | targets and points are seen, every neighbour is heard once in eight ticks, as robots speak: the mean of 32 ticks |
-//! | tick-dearest | the dearest of these: it speaks, or sorts what it knows |
-//! | tick-all-heard-at-once | the dearest when all neighbours are heard in every tick, which a radio hardly manages |
+//! | tick-largest | the costliest of these: the robot broadcasts, or sorts what it knows |
+//! | tick-all-heard-at-once | the costliest if all neighbours are heard in every tick, which a radio hardly manages |
 //! | tick-all-new-at-once | the same in a controller's first tick, when nothing is known yet |
 //! | tick-all-displaced | the same when memory is full of obstacle points, all farther away than those it perceives |
 //! | tick-nothing-perceived | all is remembered, nothing seen or heard: the mean without the update of knowledge |
@@ -120,14 +120,14 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
             let percept = percept(tick);
             instructions(&mut || _ = black_box(controller.tick(black_box(&percept))))
         };
-        (0..TICKS).map(cost).fold((0, 0), |(sum, dearest), cost| (sum + cost, cost.max(dearest)))
+        (0..TICKS).map(cost).fold((0, 0), |(sum, largest), cost| (sum + cost, cost.max(largest)))
     };
     let (_, all_heard) = ticks(|_| scene::everything());
-    let (tick, dearest) = ticks(scene::in_turn);
+    let (tick, largest) = ticks(scene::in_turn);
     // The memory still holds what the ticks before told.
     let (remembering, _) = ticks(|_| scene::nothing());
     show("tick", tick.div_ceil(TICKS));
-    show("tick-dearest", dearest);
+    show("tick-largest", largest);
     show("tick-all-heard-at-once", all_heard);
     show("tick-all-new-at-once", first);
     show("tick-all-displaced", displaced);
@@ -145,7 +145,7 @@ fn measure<S: Scalar>(model: &str, blob: &Blob) -> bool {
     let mut rest: Vec<Dual<S>, DEFAULT_GENES> = Vec::new();
     show(
         "rest",
-        instructions(&mut || network.settle([Dual::input(black_box(x[0]), 0), Dual::input(x[1], 1)], &mut rest)),
+        instructions(&mut || network.steady_levels([Dual::input(black_box(x[0]), 0), Dual::input(x[1], 1)], &mut rest)),
     );
     let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
     let mut gradient = Vector::ZERO;

@@ -7,7 +7,7 @@ use grn_core::geometry::Vector;
 use grn_core::robot::epuck2::BODY_RADIUS;
 use serde::{Deserialize, Serialize};
 
-/// A contact ends when the gap has grown beyond this, metres: what trembles at touching distance is one contact.
+/// A contact ends when the gap has grown beyond this, metres: bodies that tremble at touching distance have one contact, not many.
 pub const RELEASE_GAP: f64 = 0.001;
 /// How often overlaps are resolved per tick; a push may cause the next overlap.
 const PASSES: usize = 4;

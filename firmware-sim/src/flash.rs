@@ -9,7 +9,7 @@ use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashEr
 pub const SECTOR: usize = 1024;
 /// Bytes written at once.
 pub const WORD: usize = 4;
-/// Into how many steps an erasure of a sector divides.
+/// Steps that the erasure of a sector takes.
 const ERASE_STEPS: usize = 8;
 const ERASED: u8 = 0xff;
 

@@ -46,7 +46,7 @@ struct Ether {
     letters: Vec<Letter>,
 }
 
-/// A message in a form that is copied without looking at its parts.
+/// A message in a form of fixed size, which is copied faster than lists of variable length.
 #[derive(Clone, Copy, Debug)]
 struct Letter {
     sender: u8,

@@ -280,7 +280,8 @@ impl<B: Brain> Swarm<B> {
     /// One tick.
     ///
     /// # Errors
-    /// [`StepError`] when a brain fails; nothing has moved then, but brains before it have had their tick.
+    /// [`StepError`] when a brain fails. No body has moved then, but the brains of robots with lower numbers have already
+    /// computed this tick.
     pub fn step(&mut self) -> Result<(), StepError> {
         self.sense_neighbours();
         let messages: Result<(), StepError> = (0..self.brains.len()).try_for_each(|robot| self.think(robot));

@@ -1,7 +1,7 @@
 //! Gene-regulatory-network (GRN) controllers, from the flashed blob to wheel steps.
 //!
 //! This crate is everything that runs on the robot: `no_std`, no allocation, no `unsafe`, no panic. The host runs the
-//! same code, so what was evolved and simulated is what flies. From the bottom up:
+//! same code, so what was evolved and simulated is what robots run. From the bottom up:
 //!
 //! | module | what it holds |
 //! |---|---|

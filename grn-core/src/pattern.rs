@@ -24,7 +24,8 @@ impl fmt::Display for NoPattern {
 
 impl core::error::Error for NoPattern {}
 
-/// What a model's pattern is, known as soon as the model is.
+/// The level and orientation of a model's pattern. Both follow from the model alone, so a robot knows them before it has
+/// seen anything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern<S> {
     level: S,

@@ -9,7 +9,7 @@ use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
 use firmware_sim::metrics::largest_gap;
 use firmware_sim::scenario::{Ring, Scenario};
-use firmware_sim::trace::{Frame, metres};
+use firmware_sim::trace::{Frame, RobotState, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
 use grn_core::network::Network;
@@ -240,9 +240,11 @@ fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<f64>> {
 fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> Option<f64> {
     let targets: Vec<_> = frame.targets_um.iter().map(|&target| metres(target)).collect();
     let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets));
-    let mut errors: Vec<f64> = frame.robots.iter().filter_map(|robot| distance(robot.position_um)).collect();
+    // As in the metrics, an unknown distance is longer than any other.
+    let known = |robot: &RobotState| distance(robot.position_um).unwrap_or(f64::INFINITY);
+    let mut errors: Vec<f64> = frame.robots.iter().map(known).collect();
     errors.sort_by(f64::total_cmp);
-    errors.get(errors.len() / 2).copied()
+    errors.get(errors.len() / 2).copied().filter(|error| error.is_finite())
 }
 
 fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {

@@ -272,7 +272,8 @@ typedef struct GrnPercept {
     uint8_t heard_count;
     // 0; not read.
     uint8_t reserved2;
-    // Messages received since the last tick; of more, the strongest.
+    // Messages received since the last tick; of more, the strongest. The robot's own, which some radios give back, are
+    // ignored.
     struct GrnMessage heard[GRN_MAX_HEARD];
     // 0; not read.
     uint8_t reserved3[2];

@@ -143,7 +143,8 @@ pub struct GrnPercept {
     pub heard_count: u8,
     /// 0; not read.
     pub reserved2: u8,
-    /// Messages received since the last tick; of more, the strongest.
+    /// Messages received since the last tick; of more, the strongest. The robot's own, which some radios give back, are
+    /// ignored.
     pub heard: [GrnMessage; GRN_MAX_HEARD],
     /// 0; not read.
     pub reserved3: [u8; 2],

@@ -1,9 +1,14 @@
 //! Keeping away from what the proximity sensors feel, and going around it where no map knows it.
 //!
-//! What is close pushes the robot away. The motion law knows live neighbours and walls and keeps away from them by itself,
-//! so the push only has to stop the robot. It knows nothing of a robot that broke down, or of a box that somebody left
-//! there: push and wanted velocity could cancel out in front of it, and the robot would stand there for good. So there the
-//! push is turned to one side, and the robot slides past.
+//! The motion law keeps away from live neighbours and from walls, because robots tell each other where these are. It knows
+//! nothing of a robot that broke down or of a box that somebody left there. How a velocity is made safe:
+//!
+//! 1. Each proximity sensor that feels something near pushes the robot away from it; the pushes are added up.
+//! 2. If the wanted velocity does not lead against the push, or a neighbour or wall that the robot knows can be what pushes,
+//!    the push is added to the wanted velocity, and that is all.
+//! 3. Otherwise push and wanted velocity could cancel out, and the robot would stand there for good. So it picks a side, drops
+//!    the part of the wanted velocity that leads to the other side, and adds the push turned a quarter turn to its side, too.
+//!    The robot slides past the obstacle.
 
 use super::drive::unit;
 use super::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
@@ -27,9 +32,9 @@ const SENSOR_DIRECTIONS: [(i16, i16); PROXIMITY_SENSORS] = [
 /// crowded ring would push each other off it, because eight rays do not feel the same on both sides.
 const PUSH_RANGE: i32 = 300;
 
-/// A robot goes around an obstacle on one side until nothing has been in its way for so many ticks, 1 s, or the way there is
-/// far shorter on the other side, where it points past the obstacle by more than 63° (tan⁻¹ 2). If it chose anew in every
-/// tick, it would go to and fro between two obstacles that stand side by side.
+/// A robot keeps to one side of an obstacle until nothing has been in its way for this many ticks, 1 s. If it chose anew in
+/// every tick, it would go to and fro between two obstacles that stand side by side. It changes sides before that only if
+/// the wanted velocity leads past the obstacle on the other side, more than 63° (tan⁻¹ 2) from straight at it.
 const KEEP_SIDE_TICKS: u8 = TICKS_PER_SECOND as u8;
 
 /// On which side the robot goes around something.
@@ -54,7 +59,7 @@ pub struct Avoidance<S> {
     /// The push of one sensor that touches something, m/s.
     strength: S,
     side: Side,
-    /// For how many more ticks the side stands.
+    /// Ticks until the side may be chosen anew.
     kept: u8,
 }
 
@@ -82,7 +87,7 @@ impl<S: Scalar> Avoidance<S> {
         self.around(wanted, push, against)
     }
 
-    /// The velocity around what pushes; `against` = push · wanted. Seldom needed, so it stays out of the usual tick's way.
+    /// The velocity around what pushes; `against` = push · wanted, negative.
     fn around(&mut self, wanted: Vector<S>, push: Vector<S>, against: S) -> Vector<S> {
         // How much of the wanted velocity leads to the left: the robot looks against the push.
         let to_left = wanted.cross(push);

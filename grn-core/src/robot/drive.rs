@@ -22,7 +22,8 @@ pub struct Drive<S> {
     backwards: bool,
 }
 
-/// Below this speed (metres per second) the body turns proportionally slower: a robot at rest need not look anywhere.
+/// Below this speed (metres per second) the body turns proportionally slower. The direction of a tiny
+/// velocity is mostly noise, and a robot that follows it would turn to and fro on the spot.
 const SLOW: (i32, i32) = (1, 100);
 
 impl<S: Scalar> Drive<S> {

@@ -69,7 +69,8 @@ impl<S: Scalar> Knowledge<S> {
 
     /// Takes in one tick's percept of robot number `own`, which is at `here`.
     ///
-    /// Of what is heard in a tick, one message's obstacle points are learned: walls stand still, and a tick has its time.
+    /// Of the messages heard in a tick, only one has its obstacle points learned. That bounds the time of a tick, and costs
+    /// little: walls stand still, so the other points can be learned when they are told again.
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
     pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u8) {
@@ -150,7 +151,7 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    /// The fresher of report and own knowledge stands.
+    /// A report replaces what the robot knows of that target if it is more recent.
     fn hear_of_target(&mut self, report: &TargetReport) {
         let age = report.age.saturating_add(1);
         let known = self.targets.iter_mut().find(|known| known.target == report.target);

@@ -67,7 +67,7 @@ impl<S: Scalar> Neighbours<S> {
         let met = Neighbour { robot, position: metres(place), square, heard: now };
         match self.known.get_mut(index) {
             Some(known) => *known = met,
-            // It is full only if the index is that of a known one.
+            // There is room: in a full list the index above is that of a known neighbour.
             None => drop(self.known.push(met)),
         }
         self.note(robot, index);

@@ -12,20 +12,21 @@ use heapless::Vec;
 pub const MAX_OBSTACLES: usize = 16;
 /// An obstacle point is forgotten at this age, in units of 8 ticks: 10 s.
 const FORGET_UNITS: u8 = 40;
-/// How far a robot may get from where distances were measured, with its noise, before they mislead, millimetres.
+/// Distances are measured four times a second. How far the robot may move meanwhile, noise of its position included,
+/// millimetres.
 const SLACK: u32 = 50;
 /// A wall whose nearest known point is at this distance, 120 mm squared, may be felt: it is within 65 mm, and points on it
 /// are told some way apart.
 const CLOSE: u32 = 120 * 120;
 /// The side of a square that keeps one point: 2^5 mm.
 const CELL_LOG2: u32 = 5;
-/// Places to look first, several times as many as points.
+/// Slots of the hash table, several times as many as points, so that few cells share one.
 const SLOTS: usize = 128;
 
 /// The known points. A dozen arrive in a tick, nearly all of them known already.
 ///
-/// Who is nearer is decided in whole millimetres, which messages are in anyway, and from where the robot was when ages
-/// were last counted: in a quarter of a second it moves 36 mm at most, less than [`SLACK`].
+/// Distances are compared in whole millimetres, the unit of messages, and from where the robot was when ages were last
+/// counted. In the quarter of a second since then it has moved 36 mm at most, less than [`SLACK`].
 #[derive(Clone, Debug)]
 pub struct ObstacleMap<S> {
     known: Vec<ObstacleReport, MAX_OBSTACLES>,
@@ -40,7 +41,7 @@ pub struct ObstacleMap<S> {
     largest: u32,
     /// How far from `here` the nearest is, squared, mm², as of the last [`find_near`](Self::find_near).
     nearest: u32,
-    /// Points came since it was found out which ones are near.
+    /// Points were learned since [`find_near`](Self::find_near) last looked.
     stale: bool,
 }
 
@@ -63,7 +64,7 @@ impl<S: Scalar> ObstacleMap<S> {
         &self.known
     }
 
-    /// Those, in metres, of which one is the nearest, as of the last [`find_near`](Self::find_near).
+    /// The points, in metres, one of which is the nearest, as of the last [`find_near`](Self::find_near).
     pub fn near(&self) -> &[Point<S>] {
         &self.near
     }
@@ -123,7 +124,7 @@ impl<S: Scalar> ObstacleMap<S> {
         self.near = filled(near.map(|(known, _)| metres(known.position)));
     }
 
-    /// Where the point is kept now, if it is.
+    /// Keeps the point if there is room or it is nearer than the farthest; returns its index.
     fn place(&mut self, told: &ObstacleReport) -> Option<usize> {
         let cell = cell(told.position);
         if let Some(index) = self.known.iter().position(|known| self::cell(known.position) == cell) {
@@ -133,7 +134,7 @@ impl<S: Scalar> ObstacleMap<S> {
         }
         let square = squared_distance(told.position, self.here);
         let index = if self.known.push(*told).is_ok() {
-            // As long as the other list.
+            // Both lists have the same length, so there is room.
             let _ = self.squares.push(square);
             self.known.len() - 1
         } else if square < self.largest {
@@ -144,7 +145,7 @@ impl<S: Scalar> ObstacleMap<S> {
             return None;
         };
         self.stale = true;
-        // Which one is the farthest matters to a full map only.
+        // Only a full map must know which point is the farthest: the one to replace.
         if self.known.is_full() {
             self.find_farthest();
         }

@@ -54,7 +54,8 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world.
+    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs, and every
+    /// tick is kept: a run of 12 robots may take 11 simulated hours.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
     speed: f64,
     /// Number type the robots compute in.

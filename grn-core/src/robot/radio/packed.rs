@@ -94,7 +94,7 @@ pub fn write(message: &Message) -> Packed {
     packed
 }
 
-/// The message in bytes that [`write`] gave.
+/// The message in bytes that [`write()`] gave.
 ///
 /// # Errors
 /// [`PackedError`]; for every message of which one bit was flipped, and for all but one in 65536 of those with greater

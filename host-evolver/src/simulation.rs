@@ -2,7 +2,7 @@
 
 use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
-use firmware_sim::config::{ConfigError, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::metrics::{Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Swarm};
@@ -14,6 +14,7 @@ use grn_core::pattern::NoPattern;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
+use grn_input::InputError;
 use serde::Serialize;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -36,7 +37,7 @@ pub enum SimulationError {
     /// The blob's pattern vanishes in double precision.
     NoPattern(NoPattern),
     /// The swarm cannot be set up.
-    Config(ConfigError),
+    Config(InputError),
     /// A robot's brain failed.
     Brain(String),
     /// An emulated robot could not be started.
@@ -146,7 +147,7 @@ pub fn simulate(
 /// The controllers of a swarm in this process, by robot number.
 pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Controller<S>, SimulationError> {
     let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
-    Ok(move |robot: usize| fresh.clone().on_robot(robot as u8))
+    Ok(move |robot: usize| fresh.clone().on_robot(robot as u16))
 }
 
 /// [`simulate`] with any brains.
@@ -183,9 +184,10 @@ const RECORD_OF_ROBOT: f64 = 24.0;
 /// Whether the record of a whole run fits into memory: a slow target makes a long run, of which every tick is kept.
 ///
 /// # Errors
-/// [`ConfigError`] that says which speed is possible.
-pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
-    let per_tick = RECORD_OF_ROBOT * (config.robots + scenario.paths().len()) as f64;
+/// [`InputError`] that says which speed is possible.
+pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
+    let robots = config.lab.robots.count;
+    let per_tick = RECORD_OF_ROBOT * (robots + scenario.paths().len()) as f64;
     let most_seconds = MOST_RECORD / per_tick / f64::from(TICKS_PER_SECOND);
     let path = scenario.longest_path() * config.scale;
     if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
@@ -194,15 +196,11 @@ pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), Con
     let (hours, least) = (most_seconds / 3600.0, path / (most_seconds - config.settle_s));
     // Rounded up, so that the speed that is named is possible.
     let least = (least * 1e5).ceil() / 1e5;
-    Err(ConfigError {
-        field: "target_speed_m_per_s",
-        value: format!("{:?}", config.target_speed_m_per_s),
-        expected: format!(
-            "the run would take longer than {hours:.0} simulated hours, the most of {} robots that fits into memory; at \
-             least {least} metres per second are needed",
-            config.robots
-        ),
-    })
+    let way_out = format!(
+        "the run would take longer than {hours:.0} simulated hours, the most of {robots} robots that fits into memory; at least \
+         {least} metres per second are needed"
+    );
+    Err(InputError::new("target_speed_m_per_s", format!("{:?}", config.target_speed_m_per_s), way_out))
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.

@@ -1,14 +1,13 @@
 use super::*;
 use crate::geometry::length_squared;
-use crate::radio::RadioConfig;
-use crate::sensors::Noise;
+use crate::lab::{self, Laboratory, Wheels};
 use grn_core::blob::{Blob, FieldParameters, Gains};
 use grn_core::dynamics::Step;
 use grn_core::field::Kernel;
 use grn_core::motif::Motif;
 use grn_core::network::{Gene, Network, Source};
 use grn_core::robot::epuck2::BODY_RADIUS;
-use grn_core::robot::{Command, Controller, Message, Millimetres};
+use grn_core::robot::{Command, Controller, Message, Millimetres, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
 const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");
@@ -17,18 +16,25 @@ fn channel() -> Scenario {
     Scenario::parse(CHANNEL).unwrap()
 }
 
+/// So many robots whose wheels differ.
+fn uneven(robots: usize) -> SwarmConfig {
+    let mut config = SwarmConfig::default().with_robots(robots);
+    config.lab.wheels = Wheels { gain: 0.02, ..Wheels::default() };
+    config
+}
+
 /// Wanders, turns away from what it senses, and talks; remembers what it heard.
 struct Wanderer {
-    number: u8,
+    number: u16,
     tick: u16,
-    heard: Vec<(u16, u8, i16)>,
+    heard: Vec<(u16, u16, i16)>,
 }
 
 impl Brain for Wanderer {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        self.heard.extend(percept.heard.iter().map(|m| (self.tick, m.sender, m.position.x)));
+        self.heard.extend(percept.heard.iter().map(|m| (self.tick, m.message.sender, m.message.position.x)));
         let near = percept.proximity.iter().any(|&p| p < 300);
-        let left = if near { -300 } else { 600 + i16::from(self.number) * 5 };
+        let left = if near { -300 } else { 600 + self.number as i16 * 5 };
         let position = Millimetres { x: self.tick as i16, y: 0 };
         let broadcast = Message { sender: self.number, position, target: None, obstacles: Default::default() };
         self.tick += 1;
@@ -37,7 +43,7 @@ impl Brain for Wanderer {
 }
 
 fn wanderer(robot: usize) -> Wanderer {
-    Wanderer { number: robot as u8, tick: 0, heard: Vec::new() }
+    Wanderer { number: robot as u16, tick: 0, heard: Vec::new() }
 }
 
 /// The real controller.
@@ -63,8 +69,8 @@ fn real_bytes<S: Scalar>() -> Vec<u8> {
         time_scale: 4.0,
         gains: Gains::default(),
     };
-    let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
-    let controller = |robot| Real(Controller::<S>::new(&blob, robot as u8).unwrap());
+    let config = uneven(12);
+    let controller = |robot| Real(Controller::<S>::new(&blob, robot as u16).unwrap());
     let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
     assert_eq!(swarm.run(320, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
     swarm.trace().encode()
@@ -100,7 +106,7 @@ fn run(config: SwarmConfig, ticks: u64) -> Swarm<Wanderer> {
 
 #[test]
 fn equal_seeds_give_equal_bytes() {
-    let config = SwarmConfig { robots: 40, variation: 0.02, ..SwarmConfig::default() };
+    let config = uneven(40);
     let bytes = |seed| run(SwarmConfig { seed, ..config.clone() }, 400).trace().encode();
     assert_eq!(bytes(1), bytes(1));
     assert_ne!(bytes(1), bytes(2));
@@ -114,9 +120,10 @@ fn equal_seeds_give_equal_bytes() {
 
 #[test]
 fn a_broadcast_is_heard_in_the_next_tick() {
-    let config = SwarmConfig { robots: 5, radio: RadioConfig { range_m: 10.0, loss: 0.0 }, ..SwarmConfig::default() };
+    let config = SwarmConfig { lab: Laboratory::perfect(), ..SwarmConfig::default() }.with_robots(5);
+    let config = SwarmConfig { lab: lab::set(config.lab, "radio.range_m=10").unwrap(), ..config };
     let swarm = run(config, 10);
-    for (robot, brain) in swarm.brains().iter().enumerate() {
+    for (robot, brain) in swarm.brains().enumerate() {
         assert_eq!(brain.heard.len(), 9 * 4);
         assert!(
             brain
@@ -130,7 +137,7 @@ fn a_broadcast_is_heard_in_the_next_tick() {
 #[test]
 fn robots_start_free_and_near_the_target() {
     for (robots, scale) in [(20, 0.25), (250, 0.25), (100, 0.1), (30, 1.0)] {
-        let config = SwarmConfig { robots, scale, ..SwarmConfig::default() };
+        let config = SwarmConfig { scale, ..SwarmConfig::default() }.with_robots(robots);
         let swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
         let positions: Vec<_> = swarm.poses().iter().map(|pose| pose.position).collect();
         for (i, &p) in positions.iter().enumerate() {
@@ -141,10 +148,10 @@ fn robots_start_free_and_near_the_target() {
             assert!(robots > 30 || p.x <= swarm.targets()[0].x, "the target goes east, robots start west of it");
         }
     }
-    let full = SwarmConfig { robots: 250, scale: 0.03, ..SwarmConfig::default() };
-    assert_eq!(Swarm::new(&channel(), full, |_| Straight).unwrap_err().field, "robots");
+    let full = SwarmConfig { scale: 0.03, ..SwarmConfig::default() }.with_robots(250);
+    assert_eq!(Swarm::new(&channel(), full, |_| Straight).unwrap_err().key(), "robots");
     let large = SwarmConfig { scale: 2.0, ..SwarmConfig::default() };
-    assert_eq!(Swarm::new(&channel(), large, |_| Straight).unwrap_err().field, "scale");
+    assert_eq!(Swarm::new(&channel(), large, |_| Straight).unwrap_err().key(), "scale");
 }
 
 #[test]
@@ -162,7 +169,7 @@ fn bodies_never_enter_walls_or_stay_inside_each_other() {
         .replace("d_min = 1.0", "d_min = 0.1")
         .replace("d_max = 2.0", "d_max = 0.25");
     let scenario = Scenario::parse(&format!("{text}[[target]]\npath = [[0.55, 0.55]]\n{pen}")).unwrap();
-    let config = SwarmConfig { robots: 20, scale: 1.0, ..SwarmConfig::default() };
+    let config = SwarmConfig { scale: 1.0, ..SwarmConfig::default() }.with_robots(20);
     let mut swarm = Swarm::new(&scenario, config, |_| Straight).unwrap();
     let mut closest: f64 = 1.0;
     for _ in 0..2000 {
@@ -210,14 +217,14 @@ fn only_mothers_see_far() {
             Ok(Command::default())
         }
     }
-    let config = SwarmConfig { robots: 6, mothers: 2, noise: Noise::NONE, ..SwarmConfig::default() };
+    let config = SwarmConfig { lab: Laboratory::perfect(), ..SwarmConfig::default() }.with_robots(6);
     let mut swarm = Swarm::new(&channel(), config, |_| Watcher(0, 0)).unwrap();
     (0..4).for_each(|_| swarm.step().unwrap());
-    let seen: Vec<_> = swarm.brains().iter().map(|w| w.0).collect();
+    let seen: Vec<_> = swarm.brains().map(|w| w.0).collect();
     assert_eq!(seen, [1, 1, 0, 0, 0, 0]);
     // The nearest corner is 5 m from the target: whether a mother sees walls depends on where it stands.
     let range = 5.0 * 0.25;
-    for (robot, (watcher, pose)) in swarm.brains().iter().zip(swarm.poses()).enumerate() {
+    for (robot, (watcher, pose)) in swarm.brains().zip(swarm.poses()).enumerate() {
         let corners = [3.5, 1.5].map(|y| (pose.position - Point::new(1.5, y)).length());
         assert_eq!(watcher.1 > 0, robot < 2 && corners.iter().any(|&d| d <= range), "{robot}");
     }

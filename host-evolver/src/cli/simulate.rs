@@ -1,12 +1,16 @@
 //! `grn simulate`.
 
+use super::conditions::Conditions;
+use super::robustness;
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
 use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
+use crate::realities;
 use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
-use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
+use firmware_sim::lab::{Laboratory, MAX_ROBOTS};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
 use grn_core::blob::Blob;
@@ -15,12 +19,11 @@ use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
 use serde_json::json;
 use std::io::ErrorKind;
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Robots of a simulation when nothing else is said.
-pub const DEFAULT_ROBOTS: usize = 12;
 /// Robots in QEMU when nothing else is said.
 const DEFAULT_EMULATED: usize = 4;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
@@ -48,9 +51,20 @@ pub struct Arguments {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many robots.
-    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots)]
-    robots: usize,
+    /// How many robots, two of them mothers [default: the laboratory's].
+    #[arg(long, value_parser = robots)]
+    robots: Option<usize>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Simulate in so many laboratories drawn around this one, and say in how many of them it works.
+    #[arg(long, value_name = "N", value_parser = robustness::count, conflicts_with_all = ["reality", "target"])]
+    realities: Option<u64>,
+    /// Simulate in one of these laboratories, by its number; 0 is the laboratory itself.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = robustness::number)]
+    reality: u64,
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads)]
+    threads: Option<NonZeroUsize>,
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
@@ -70,7 +84,7 @@ pub struct Arguments {
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg.
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg; with --realities for realities.csv and realities.json.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -85,7 +99,7 @@ enum Target {
 }
 
 /// What may be in the folder of `--out`.
-const FILES: [&str; 4] = ["metrics.json", "trace.bin", "trace.csv", "trace.svg"];
+const FILES: [&str; 6] = ["metrics.json", "realities.csv", "realities.json", "trace.bin", "trace.csv", "trace.svg"];
 
 /// Where `cargo xtask target` leaves images.
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
@@ -97,16 +111,27 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         files::blob_bytes(&blob).map_err(about("--scale"))?;
     }
     let scenario = Scenario::load(&arguments.scenario)?;
-    let config = SwarmConfig {
-        robots: arguments.robots,
-        seed: arguments.seed,
-        target_speed_m_per_s: arguments.speed,
-        ..usual_config(blob.scale, arguments.robots)
+    let lab = arguments.conditions.laboratory()?;
+    let config =
+        SwarmConfig { seed: arguments.seed, target_speed_m_per_s: arguments.speed, ..usual_config(blob.scale, lab) };
+    let config = match arguments.robots {
+        Some(count) => config.with_robots(count),
+        None => config,
     };
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
+    let pool = options::pool(arguments.threads)?;
+    if let Some(count) = arguments.realities {
+        let experiment = robustness::Experiment { blob: &blob, scenario: &scenario, config: &config, number: arguments.number };
+        let robustness = pool.install(|| experiment.run(&arguments.blob, count, &stop))?;
+        if let Some(lock) = &lock {
+            keep(lock.folder(), &experiment.files(&robustness)?)?;
+        }
+        return experiment.tell(&robustness, arguments.json);
+    }
+    let config = realities::reality(&config, arguments.reality);
+    let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &stop))?;
     if let Some(lock) = &lock {
         keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
     }
@@ -136,7 +161,7 @@ fn simulated(
                     NumberType::Q8_24 => "robot-q8_24",
                 })
             });
-            let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
+            let emulation = Emulation { image, robots: arguments.emulated.min(config.lab.robots.count) };
             let path = &arguments.blob;
             with_progress(path, stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
         }
@@ -152,11 +177,11 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
     let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
-    fits.map_err(|error| match error.field {
-        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value, error.expected)),
+    fits.map_err(|error| match error.key() {
+        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value(), error.expected())),
         "scale" | "robots" => {
             let [east, north] = scenario.region();
-            let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
+            let fault = format!("--{} {}: {}", error.key(), error.value(), error.expected());
             let error = InputError::new("region", format!("[{east:?}, {north:?}]"), fault);
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
@@ -165,15 +190,9 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
     })
 }
 
-/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
-pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
-    SwarmConfig {
-        robots,
-        mothers: robots.clamp(1, 2),
-        scale: f64::from(scale),
-        target_speed_m_per_s: DEFAULT_SPEED,
-        ..SwarmConfig::default()
-    }
+/// The usual run in a laboratory for a blob of this scale.
+pub fn usual_config(scale: f32, lab: Laboratory) -> SwarmConfig {
+    SwarmConfig { scale: f64::from(scale), target_speed_m_per_s: DEFAULT_SPEED, lab, ..SwarmConfig::default() }
 }
 
 /// Runs a simulation with a progress bar and Ctrl-C.
@@ -259,9 +278,10 @@ fn metrics_json(simulation: &Simulation) -> serde_json::Value {
         "number": simulation.number,
         "scenario": simulation.trace.header().scenario,
         "seed": simulation.config.seed,
-        "robots": simulation.config.robots,
+        "robots": simulation.config.lab.robots.count,
+        "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "swarm": simulation.config,
+        "conditions": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

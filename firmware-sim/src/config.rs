@@ -3,6 +3,7 @@
 use crate::lab::Laboratory;
 use grn_input::{InputError, Range};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// A run: the laboratory, scale and timing. Metres are real ones, in which a robot is 7 cm across.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,6 +76,12 @@ impl SwarmConfig {
     pub fn stop_ticks(&self) -> Vec<Option<u64>> {
         let first = |robot| self.stops.iter().filter(|stop| stop.robot == robot).map(|stop| stop.tick).min();
         (0..self.lab.robots.count).map(first).collect()
+    }
+
+    /// The ticks in which a robot breaks down while the swarm is under way, rising.
+    pub fn disturbances(&self) -> Vec<u64> {
+        let ticks: BTreeSet<u64> = self.stops.iter().map(|stop| stop.tick).filter(|&tick| tick > 0).collect();
+        ticks.into_iter().collect()
     }
 }
 

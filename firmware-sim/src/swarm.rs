@@ -22,7 +22,7 @@ use crate::proximity::{ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::Ether;
 use crate::scenario::{PERCEPTION_RANGE, Scenario};
 use crate::sensors::{micrometres, unit_q14};
-use crate::trace::{RobotState, Trace, TraceHeader};
+use crate::trace::{Frame, Observer, RobotState};
 use core::fmt;
 use core::ops::ControlFlow;
 use grn_core::geometry::Point;
@@ -97,14 +97,22 @@ pub struct Swarm<B> {
     ether: Ether,
     contacts: Contacts,
     targets: Vec<Point<f64>>,
-    frame: u64,
-    trace: Trace,
+    tick: u64,
+    recorded: Recorded,
+}
+
+/// The present moment as observers see it.
+#[derive(Default)]
+struct Recorded {
+    targets_um: Vec<[i32; 2]>,
+    robots: Vec<RobotState>,
+    contacts: ContactCounts,
 }
 
 impl<B> fmt::Debug for Swarm<B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = f.debug_struct("Swarm");
-        shown.field("config", &self.config).field("frame", &self.frame).field("positions", &self.positions);
+        shown.field("config", &self.config).field("frame", &self.tick).field("positions", &self.positions);
         shown.finish_non_exhaustive()
     }
 }
@@ -159,17 +167,6 @@ impl<B: Brain> Swarm<B> {
         let lab = &config.lab;
         let n = lab.robots.count;
         let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
-        let header = TraceHeader {
-            scenario: scenario.name().to_owned(),
-            seed: config.seed,
-            scale: config.scale,
-            settle_s: config.settle_s,
-            target_speed_m_per_s: config.target_speed_m_per_s,
-            ticks_per_second: TICKS_PER_SECOND,
-            robots: n as u16,
-            mothers: lab.robots.mothers as u16,
-            targets: world.paths().len() as u16,
-        };
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
         let unit = |robot| Unit::new(robot, brain(robot), &config, &tracker, &ether, samples.len());
@@ -188,8 +185,8 @@ impl<B: Brain> Swarm<B> {
             ether,
             contacts: Contacts::new(n),
             targets: world.targets_at(0.0),
-            frame: 0,
-            trace: Trace::new(header),
+            tick: 0,
+            recorded: Recorded::default(),
             world,
             config,
         };
@@ -214,7 +211,7 @@ impl<B: Brain> Swarm<B> {
 
     /// Frames simulated so far.
     pub fn tick(&self) -> u64 {
-        self.frame
+        self.tick
     }
 
     /// Where robots are and look now.
@@ -232,20 +229,10 @@ impl<B: Brain> Swarm<B> {
         self.units.iter().map(|unit| &unit.brain)
     }
 
-    /// Everything recorded so far, from the start on.
-    pub fn trace(&self) -> &Trace {
-        &self.trace
-    }
-
-    /// The recorded run, giving up the swarm.
-    pub fn into_trace(self) -> Trace {
-        self.trace
-    }
-
-    /// Forgets the record and begins a new one with the present state; for runs too long to keep.
-    pub fn restart_trace(&mut self) {
-        self.trace = Trace::new(self.trace.header().clone());
-        self.record(ContactCounts::default());
+    /// The present moment.
+    pub fn frame(&self) -> Frame<'_> {
+        let Recorded { targets_um, robots, contacts } = &self.recorded;
+        Frame { tick: self.tick, targets_um, robots, contacts: *contacts }
     }
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
@@ -257,21 +244,29 @@ impl<B: Brain> Swarm<B> {
         self.world.longest_path() / self.config.target_speed_m_per_s
     }
 
-    /// Simulates up to the tick `end`. `watch` is called before each simulated second and at the end, and may stop the
-    /// run.
+    /// Simulates up to the tick `end`. `observer` sees the start, if nothing has been simulated yet, and the world after
+    /// every tick. `watch` is called before each simulated second and at the end, and may stop the run.
     ///
     /// # Errors
-    /// [`StepError`] when a brain fails; the trace then ends with the last whole tick.
-    pub fn run(&mut self, end: u64, mut watch: impl FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, StepError> {
-        self.trace.reserve(usize::try_from(end.saturating_sub(self.frame)).unwrap_or(0).min(1 << 16));
-        while self.frame < end {
-            let whole_second = self.frame.is_multiple_of(u64::from(TICKS_PER_SECOND));
-            if whole_second && watch(Progress { tick: self.frame, end }).is_break() {
+    /// [`StepError`] when a brain fails; the observer has then seen the last whole tick.
+    pub fn run(
+        &mut self,
+        end: u64,
+        observer: &mut (impl Observer + ?Sized),
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Outcome, StepError> {
+        if self.tick == 0 {
+            observer.observe(&self.frame());
+        }
+        while self.tick < end {
+            let whole_second = self.tick.is_multiple_of(u64::from(TICKS_PER_SECOND));
+            if whole_second && watch(Progress { tick: self.tick, end }).is_break() {
                 return Ok(Outcome::Interrupted);
             }
             self.step()?;
+            observer.observe(&self.frame());
         }
-        let _ = watch(Progress { tick: self.frame, end });
+        let _ = watch(Progress { tick: self.tick, end });
         Ok(Outcome::Finished)
     }
 
@@ -282,7 +277,7 @@ impl<B: Brain> Swarm<B> {
     /// and the swarm cannot go on.
     pub fn step(&mut self) -> Result<(), StepError> {
         self.grid.rebuild((0..).zip(self.positions.iter().copied()));
-        self.ether.begin(self.frame, &self.positions);
+        self.ether.begin(self.tick, &self.positions);
         self.think_and_drive()?;
         self.near.clear();
         for (robot, unit) in (0u16..).zip(&self.units) {
@@ -295,7 +290,7 @@ impl<B: Brain> Swarm<B> {
         for (position, pose) in self.positions.iter_mut().zip(&self.poses) {
             *position = pose.position;
         }
-        self.frame += 1;
+        self.tick += 1;
         self.move_targets();
         self.record(counts);
         Ok(())
@@ -304,7 +299,7 @@ impl<B: Brain> Swarm<B> {
     fn think_and_drive(&mut self) -> Result<(), StepError> {
         let around = Surroundings {
             lab: &self.config.lab,
-            frame: self.frame,
+            frame: self.tick,
             positions: &self.positions,
             targets: &self.targets,
             samples: &self.samples,
@@ -328,7 +323,7 @@ impl<B: Brain> Swarm<B> {
     }
 
     fn move_targets(&mut self) {
-        let travelled = self.frame as f64 / f64::from(TICKS_PER_SECOND) - self.config.settle_s;
+        let travelled = self.tick as f64 / f64::from(TICKS_PER_SECOND) - self.config.settle_s;
         let fraction = if travelled > 0.0 { travelled / self.travel_s() } else { 0.0 };
         for (target, path) in self.targets.iter_mut().zip(self.world.paths()) {
             *target = path.at(fraction);
@@ -342,7 +337,11 @@ impl<B: Brain> Swarm<B> {
             heading_q14: [unit_q14(pose.heading.x), unit_q14(pose.heading.y)],
             wheels: unit.wheels,
         });
-        self.trace.push(self.targets.iter().map(|&target| um(target)), robots, contacts);
+        self.recorded.targets_um.clear();
+        self.recorded.targets_um.extend(self.targets.iter().map(|&target| um(target)));
+        self.recorded.robots.clear();
+        self.recorded.robots.extend(robots);
+        self.recorded.contacts = contacts;
     }
 }
 

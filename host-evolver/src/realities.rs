@@ -128,7 +128,7 @@ pub fn try_all(
 ) -> Result<Option<Robustness>, SimulationError> {
     let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let one = |number| {
-        let simulation = simulate(blob, scenario, reality(config, number), number_type, watch)?;
+        let simulation = simulate(blob, scenario, reality(config, number), number_type, &mut (), watch)?;
         done();
         Ok(simulation.map(|simulation| Reality::of(number, &simulation)))
     };

@@ -100,8 +100,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Ok(Answer::No);
     }
     let (robots, lab) = (config.lab.robots.count, config.lab.name.clone());
-    let simulation = watched(&run.path("knee.grn"), &knee, &scenario, config, NumberType::F32, &stop)?;
-    for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
+    let mut recorder = simulate::recorder(&scenario, &config);
+    let knee_path = run.path("knee.grn");
+    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop)?;
+    for (name, content) in simulate::files(&simulation, recorder.trace(), &scenario, &knee)? {
         contents.insert(format!("simulation/{name}"), content);
     }
     run.finish(&contents)?;

@@ -13,6 +13,7 @@ use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::{Laboratory, MAX_ROBOTS};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
+use firmware_sim::trace::{Observer, Recorder, Trace, TraceHeader};
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
@@ -68,8 +69,7 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs, and every
-    /// tick is kept: a run of 12 robots may take 11 simulated hours.
+    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
     speed: f64,
     /// Number type the robots compute in.
@@ -84,7 +84,8 @@ pub struct Arguments {
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg; with --realities for realities.csv and realities.json.
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg; with --realities for realities.csv and realities.json. A
+    /// trace has every tick, or of a run that is too long for the memory every second, fourth, ….
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -123,7 +124,8 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let lock = arguments.out.as_deref().map(take).transpose()?;
     let pool = options::pool(arguments.threads)?;
     if let Some(count) = arguments.realities {
-        let experiment = robustness::Experiment { blob: &blob, scenario: &scenario, config: &config, number: arguments.number };
+        let experiment =
+            robustness::Experiment { blob: &blob, scenario: &scenario, config: &config, number: arguments.number };
         let robustness = pool.install(|| experiment.run(&arguments.blob, count, &stop))?;
         if let Some(lock) = &lock {
             keep(lock.folder(), &experiment.files(&robustness)?)?;
@@ -131,12 +133,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return experiment.tell(&robustness, arguments.json);
     }
     let config = realities::reality(&config, arguments.reality);
-    let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &stop))?;
-    if let Some(lock) = &lock {
-        keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
-    }
+    let simulation = match &lock {
+        Some(lock) => {
+            let mut recorder = recorder(&scenario, &config);
+            let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &mut recorder, &stop))?;
+            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob)?)?;
+            simulation
+        }
+        None => pool.install(|| simulated(arguments, &blob, &scenario, config, &mut (), &stop))?,
+    };
     if arguments.json {
-        output::product_json(&metrics_json(&simulation))?;
+        output::product_json(&metrics_json(&simulation, &scenario))?;
     } else {
         output::report(table(&simulation));
     }
@@ -148,11 +155,12 @@ fn simulated(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
     let number = arguments.number;
     match arguments.target {
-        Target::Native => watched(&arguments.blob, blob, scenario, config, number, stop),
+        Target::Native => watched(&arguments.blob, blob, scenario, config, number, observer, stop),
         #[cfg(unix)]
         Target::Qemu => {
             let image = arguments.image.clone().unwrap_or_else(|| {
@@ -163,7 +171,9 @@ fn simulated(
             });
             let emulation = Emulation { image, robots: arguments.emulated.min(config.lab.robots.count) };
             let path = &arguments.blob;
-            with_progress(path, stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
+            with_progress(path, stop, |watch| {
+                emulation::simulate(blob, scenario, config, number, &emulation, observer, watch)
+            })
         }
         #[cfg(not(unix))]
         Target::Qemu => Err(Failure::Input("--target qemu needs Unix sockets, which this system has not".into())),
@@ -202,9 +212,10 @@ pub fn watched(
     scenario: &Scenario,
     config: SwarmConfig,
     number: NumberType,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
+    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, observer, watch))
 }
 
 fn with_progress(
@@ -226,17 +237,23 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
+/// The most memory that the record of a run takes, bytes. To write it as text and as bytes takes four times as much more.
+const MOST_RECORD: usize = 100_000_000;
+
+/// Keeps a run for its files.
+pub fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
+    Recorder::new(TraceHeader::of(scenario, config), MOST_RECORD)
+}
+
 /// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let mut csv = Vec::new();
-    simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation))? + "\n";
+pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
+    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, scenario))? + "\n";
     let mut contents = Contents::from([
-        ("trace.bin".into(), simulation.trace.encode()),
-        ("trace.csv".into(), csv),
+        ("trace.bin".into(), trace.encode()),
+        ("trace.csv".into(), trace.to_csv()),
         ("metrics.json".into(), metrics.into_bytes()),
     ]);
-    match figures::run(simulation, scenario, blob) {
+    match figures::run(simulation, trace, scenario, blob) {
         Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
         Err(error) => output::notice(format_args!("no trace.svg: {error}")),
     }
@@ -270,13 +287,13 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     Ok(())
 }
 
-fn metrics_json(simulation: &Simulation) -> serde_json::Value {
+fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Value {
     let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
     json!({
         "grn": files::VERSION,
         "blob": identity,
         "number": simulation.number,
-        "scenario": simulation.trace.header().scenario,
+        "scenario": scenario.name(),
         "seed": simulation.config.seed,
         "robots": simulation.config.lab.robots.count,
         "laboratory": simulation.config.lab.name,

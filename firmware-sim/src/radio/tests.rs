@@ -77,7 +77,7 @@ fn latency_and_packets_delay_a_message() {
     let bytes = grn_core::robot::radio::packed::write(&message(1)).len();
     let packets = lab::packets(&message(1), bytes / 2);
     assert!(packets >= 2);
-    assert_eq!(arrival(&radio(|radio| radio.payload_bytes = bytes / 2)), (packets, (packets as u16 * 125).div_ceil(4)));
+    assert_eq!(arrival(&radio(|radio| radio.payload_bytes = bytes / 2)), (packets, (packets as u16 * 125 + 2) / 4));
 }
 
 #[test]

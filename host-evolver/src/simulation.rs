@@ -5,7 +5,7 @@ use firmware_sim::brain::Brain;
 use firmware_sim::config::{ConfigError, SwarmConfig};
 use firmware_sim::metrics::{Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
-use firmware_sim::swarm::{Outcome, Swarm};
+use firmware_sim::swarm::{Outcome, StepError, Swarm};
 use firmware_sim::trace::Trace;
 use grn_core::blob::{Blob, Identity};
 use grn_core::field::Kernel;
@@ -15,6 +15,7 @@ use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use serde::Serialize;
+use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -38,9 +39,7 @@ pub enum SimulationError {
     /// The swarm cannot be set up.
     Config(ConfigError),
     /// A robot's brain failed.
-    Brain(String),
-    /// An emulated robot could not be started.
-    Emulator(String),
+    Brain(StepError),
 }
 
 impl fmt::Display for SimulationError {
@@ -49,12 +48,22 @@ impl fmt::Display for SimulationError {
             SimulationError::Load(error) => error.fmt(f),
             SimulationError::NoPattern(error) => error.fmt(f),
             SimulationError::Config(error) => error.fmt(f),
-            SimulationError::Brain(error) | SimulationError::Emulator(error) => f.write_str(error),
+            SimulationError::Brain(error) => error.fmt(f),
         }
     }
 }
 
-impl std::error::Error for SimulationError {}
+impl Error for SimulationError {
+    /// It shows the words of the error in it, so the next in the chain is what that one comes from.
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            SimulationError::Load(error) => error.source(),
+            SimulationError::NoPattern(error) => error.source(),
+            SimulationError::Config(error) => error.source(),
+            SimulationError::Brain(error) => error.source(),
+        }
+    }
+}
 
 /// A finished run.
 pub struct Simulation {
@@ -163,7 +172,7 @@ pub(crate) fn run<B: Brain>(
     let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
     let outcome = swarm.run(end, |progress| watch(progress.tick as f64 / progress.end.max(1) as f64));
-    match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
+    match outcome.map_err(SimulationError::Brain)? {
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }

@@ -1,17 +1,63 @@
 //! A robot's image in QEMU, behind a link.
 
+use core::error::Error;
+use core::fmt;
 use core::time::Duration;
 use grn_link::Wire;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Instant;
 
 /// The board that the image is for; an STM32F405, of the e-puck2's family.
 const MACHINE: &str = "netduinoplus2";
 /// How long QEMU may take to open its end of the link.
 const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Why an image does not run.
+#[derive(Debug)]
+pub enum EmulatorError {
+    /// It cannot be read.
+    Image(PathBuf, io::Error),
+    /// It is no ELF file.
+    NotAnImage(PathBuf),
+    /// QEMU cannot be run.
+    Run(io::Error),
+    /// QEMU ended at once.
+    Ended(ExitStatus),
+    /// QEMU did not open its end of the link in time.
+    Silent,
+}
+
+impl fmt::Display for EmulatorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EmulatorError::Image(path, error) if error.kind() == io::ErrorKind::NotFound => {
+                write!(f, "{} is not there; build it with `cargo xtask target`", path.display())
+            }
+            EmulatorError::Image(path, _) => write!(f, "{}: the image cannot be read", path.display()),
+            EmulatorError::NotAnImage(path) => {
+                write!(f, "{} is no image (an ELF file); give one that `cargo xtask target` builds", path.display())
+            }
+            EmulatorError::Run(_) => f.write_str(
+                "qemu-system-arm cannot be run; install it, on Debian with `apt-get install qemu-system-arm`",
+            ),
+            EmulatorError::Ended(status) => write!(f, "qemu-system-arm ended with {status}"),
+            EmulatorError::Silent => f.write_str("qemu-system-arm opens no serial line"),
+        }
+    }
+}
+
+impl Error for EmulatorError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            EmulatorError::Image(_, error) | EmulatorError::Run(error) => Some(error),
+            EmulatorError::NotAnImage(_) | EmulatorError::Ended(_) | EmulatorError::Silent => None,
+        }
+    }
+}
 
 /// An emulated robot; it ends when it is dropped.
 #[derive(Debug)]
@@ -25,12 +71,9 @@ impl Emulator {
     /// Starts an image; `socket` names the Unix socket that becomes its serial line.
     ///
     /// # Errors
-    /// A missing image or QEMU, or a QEMU that does not open the socket; in words with the way out.
-    pub fn start(image: &Path, socket: PathBuf) -> io::Result<Self> {
-        if !image.exists() {
-            let missing = format!("{} is not there; build it with `cargo xtask target`", image.display());
-            return Err(io::Error::new(io::ErrorKind::NotFound, missing));
-        }
+    /// [`EmulatorError`].
+    pub fn start(image: &Path, socket: PathBuf) -> Result<Self, EmulatorError> {
+        check(image)?;
         let mut process = Command::new("qemu-system-arm")
             .args(["-M", MACHINE, "-display", "none", "-monitor", "none"])
             .arg("-chardev")
@@ -41,10 +84,7 @@ impl Emulator {
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
-            .map_err(|error| {
-                let way_out = "install it, on Debian with `apt-get install qemu-system-arm`";
-                io::Error::new(error.kind(), format!("qemu-system-arm cannot be run: {error}; {way_out}"))
-            })?;
+            .map_err(EmulatorError::Run)?;
         match connect(&mut process, &socket) {
             Ok(wire) => Ok(Emulator { process, socket, wire }),
             Err(error) => {
@@ -56,17 +96,28 @@ impl Emulator {
     }
 }
 
-fn connect(process: &mut Child, socket: &Path) -> io::Result<UnixStream> {
+/// Refuses what is no image before QEMU takes it for a memory dump and runs that.
+fn check(image: &Path) -> Result<(), EmulatorError> {
+    let mut magic = [0; 4];
+    let read = File::open(image).and_then(|mut file| file.read(&mut magic));
+    match read {
+        Ok(_) if magic == *b"\x7fELF" => Ok(()),
+        Ok(_) => Err(EmulatorError::NotAnImage(image.into())),
+        Err(error) => Err(EmulatorError::Image(image.into(), error)),
+    }
+}
+
+fn connect(process: &mut Child, socket: &Path) -> Result<UnixStream, EmulatorError> {
     let begun = Instant::now();
     loop {
         if let Ok(wire) = UnixStream::connect(socket) {
             return Ok(wire);
         }
-        if let Some(status) = process.try_wait()? {
-            return Err(io::Error::other(format!("qemu-system-arm ended with {status}")));
+        if let Some(status) = process.try_wait().map_err(EmulatorError::Run)? {
+            return Err(EmulatorError::Ended(status));
         }
         if begun.elapsed() > PATIENCE {
-            return Err(io::Error::new(io::ErrorKind::TimedOut, "qemu-system-arm opens no serial line"));
+            return Err(EmulatorError::Silent);
         }
         std::thread::sleep(Duration::from_millis(5));
     }

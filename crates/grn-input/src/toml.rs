@@ -151,7 +151,9 @@ fn shape_error(text: &str, root: &Spanned<DeTable<'_>>, error: &toml::de::Error)
 
 /// From `invalid type: WHAT IS THERE, expected WHAT IS NEEDED`, with Rust's names of types, to words of TOML.
 fn wrong_type(message: &str) -> Option<String> {
-    let (found, needed) = message.strip_prefix("invalid type: ")?.rsplit_once(", expected ")?;
+    // An integer that is no i64 is of the right type for serde.
+    let too_large = || message.strip_prefix("invalid value: ").filter(|rest| rest.ends_with("expected i64"));
+    let (found, needed) = message.strip_prefix("invalid type: ").or_else(too_large)?.rsplit_once(", expected ")?;
     let needed = match needed {
         "f64" => "a number",
         "i64" if found.starts_with("floating point") => "a whole number, without point and exponent",
@@ -276,6 +278,11 @@ mod tests {
                 "count = 3",
                 "count = 99999999999999999999",
                 "line 4:9: ring.count = 99999999999999999999: must be a smaller whole number",
+            ),
+            (
+                "count = 3",
+                "count = 9223372036854775808",
+                "line 4:9: ring.count = 9223372036854775808: must be a smaller whole number",
             ),
             ("d_min = 1.0", "d_min = \"1\"", "line 3:9: ring.d_min = \"1\": must be a number, and is a text"),
             ("d_min = 1.0", "d_min = [1]", "line 3:9: ring.d_min = [1]: must be a number, and is a list"),

@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 pub enum EmulatorError {
     /// It cannot be read.
     Image(PathBuf, io::Error),
-    /// It is no ELF file.
+    /// It is no ELF file for Arm.
     NotAnImage(PathBuf),
     /// QEMU cannot be run.
     Run(io::Error),
@@ -39,7 +39,11 @@ impl fmt::Display for EmulatorError {
             }
             EmulatorError::Image(path, _) => write!(f, "{}: the image cannot be read", path.display()),
             EmulatorError::NotAnImage(path) => {
-                write!(f, "{} is no image (an ELF file); give one that `cargo xtask target` builds", path.display())
+                write!(
+                    f,
+                    "{} is no image, an ELF file for Arm; give one that `cargo xtask target` builds",
+                    path.display()
+                )
             }
             EmulatorError::Run(_) => f.write_str(
                 "qemu-system-arm cannot be run; install it, on Debian with `apt-get install qemu-system-arm`",
@@ -96,15 +100,14 @@ impl Emulator {
     }
 }
 
-/// Refuses what is no image before QEMU takes it for a memory dump and runs that.
+/// Refuses what is no program for an Arm chip before QEMU takes it for a memory dump and runs that.
 fn check(image: &Path) -> Result<(), EmulatorError> {
-    let mut magic = [0; 4];
-    let read = File::open(image).and_then(|mut file| file.read(&mut magic));
-    match read {
-        Ok(_) if magic == *b"\x7fELF" => Ok(()),
-        Ok(_) => Err(EmulatorError::NotAnImage(image.into())),
-        Err(error) => Err(EmulatorError::Image(image.into(), error)),
-    }
+    let mut header = Vec::new();
+    let read = File::open(image).and_then(|file| file.take(20).read_to_end(&mut header));
+    read.map_err(|error| EmulatorError::Image(image.into(), error))?;
+    // ELF of 32 bits, little-endian; its machine is 40, EM_ARM.
+    let is_for_arm = header.starts_with(b"\x7fELF\x01\x01") && header.get(18..20) == Some(&[40, 0]);
+    if is_for_arm { Ok(()) } else { Err(EmulatorError::NotAnImage(image.into())) }
 }
 
 fn connect(process: &mut Child, socket: &Path) -> Result<UnixStream, EmulatorError> {
@@ -139,5 +142,26 @@ impl Wire for Emulator {
 
     fn receive(&mut self, buffer: &mut [u8], patience: Duration) -> io::Result<usize> {
         self.wire.receive(buffer, patience)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_program_for_arm_is_not_run() {
+        let image = std::env::temp_dir().join(format!("grn-no-image-{}", std::process::id()));
+        let mut x86 = b"\x7fELF\x02\x01\x01".to_vec();
+        x86.resize(18, 0);
+        x86.extend([62, 0]);
+        for content in [b"".as_slice(), b"GRNb", b"\x7fELF\x01\x01", &x86] {
+            std::fs::write(&image, content).unwrap();
+            let error = Emulator::start(&image, image.with_extension("socket")).unwrap_err();
+            assert!(matches!(error, EmulatorError::NotAnImage(_)), "{error}");
+        }
+        std::fs::remove_file(&image).unwrap();
+        let error = Emulator::start(&image, image.with_extension("socket")).unwrap_err().to_string();
+        assert!(error.contains("is not there; build it"), "{error}");
     }
 }

@@ -66,7 +66,7 @@ fn real_bytes<S: Scalar>() -> Vec<u8> {
     let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
     let controller = |robot| Real(Controller::<S>::new(&blob, robot as u8).unwrap());
     let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
-    assert_eq!(swarm.run(320, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(swarm.run(320, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
     swarm.trace().encode()
 }
 
@@ -94,7 +94,7 @@ impl Brain for Straight {
 
 fn run(config: SwarmConfig, ticks: u64) -> Swarm<Wanderer> {
     let mut swarm = Swarm::new(&channel(), config, wanderer).unwrap();
-    assert_eq!(swarm.run(ticks, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(swarm.run(ticks, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
     swarm
 }
 
@@ -107,8 +107,8 @@ fn equal_seeds_give_equal_bytes() {
     // In two runs, through a box, the same.
     let mut boxed: Swarm<Box<dyn Brain>> =
         Swarm::new(&channel(), config.clone(), |robot| Box::new(wanderer(robot)) as _).unwrap();
-    assert_eq!(boxed.run(150, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    assert_eq!(boxed.run(400, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(boxed.run(150, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
+    assert_eq!(boxed.run(400, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
     assert_eq!(boxed.trace().encode(), bytes(1));
 }
 
@@ -238,7 +238,7 @@ fn a_failing_brain_is_named_and_a_callback_may_stop() {
         calls.push(progress.tick);
         if progress.tick == 32 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    assert_eq!((stopped, calls), (Ok(Outcome::Interrupted), vec![0, 32]));
+    assert_eq!((stopped.unwrap(), calls), (Outcome::Interrupted, vec![0, 32]));
     let error = swarm.run(100, |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(error.to_string(), "robot 3 gave no command in tick 49: link closed");
     assert_eq!(swarm.trace().len(), 50);

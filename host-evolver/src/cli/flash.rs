@@ -1,7 +1,7 @@
 //! `grn flash`.
 
 use super::connection::{self, CONNECT_LIMIT, ConnectionError, DEFAULT_BAUD, hexadecimal};
-use super::{Answer, Failure, about, interrupt, options, output};
+use super::{Answer, Failure, about, interrupt, options, output, take_folder};
 use crate::files::{blob_bytes, read_blob};
 use crate::sectors::Sector;
 use crate::slot_file::{Programmer, SlotFile, SlotPaths, UploadNumber};
@@ -245,6 +245,7 @@ fn write(folder: &std::path::Path, bytes: &[u8], arguments: &Arguments) -> Resul
     let would = if arguments.dry_run { "would be written" } else { "written" };
     let last = file.address + file.bytes.len() as u32 - 1;
     if !arguments.dry_run {
+        let _lock = take_folder(folder)?;
         file.write(&paths, &arguments.programmer)?;
     }
     let [hex, binary, script] = SlotPaths::NAMES.map(|name| folder.join(name));

@@ -19,11 +19,13 @@ mod simulate;
 mod snippet;
 mod trial;
 
+use crate::files::FolderLock;
 use clap::{Parser, Subcommand};
 use exit::Exit;
 use failure::{Failure, about};
 use std::fmt;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Evolve gene-regulatory-network controllers for robot swarms, prove them in simulation, look at them.
@@ -69,6 +71,17 @@ enum Answer {
 /// The command line as it was given, for whoever wants a folder that it writes.
 fn this_command() -> String {
     std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
+}
+
+/// Takes the folder of an `--out` that is neither a run's nor a campaign's.
+fn take_folder(folder: &Path) -> Result<FolderLock, Failure> {
+    let manifest = folder.join("manifest.json");
+    if manifest.exists() {
+        let fault =
+            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
+        return Err(Failure::Input(format!("{}: {fault}", manifest.display())));
+    }
+    Ok(FolderLock::take(folder, &this_command())?)
 }
 
 /// That the system gives no threads is not the fault of who asks for them.

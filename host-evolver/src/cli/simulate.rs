@@ -1,6 +1,6 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation, EmulationError};
 use crate::figures;
@@ -253,13 +253,7 @@ pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Resul
 
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
-    let manifest = folder.join("manifest.json");
-    if manifest.exists() {
-        let fault =
-            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
-        return Err(Failure::Input(format!("{}: {fault}", manifest.display())));
-    }
-    let lock = FolderLock::take(folder, &this_command())?;
+    let lock = take_folder(folder)?;
     FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }

@@ -7,6 +7,7 @@ use firmware_sim::config::SwarmConfig;
 use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::qemu::{Emulator, EmulatorError};
 use firmware_sim::scenario::Scenario;
+use firmware_sim::trace::Observer;
 use grn_core::blob::{Blob, BlobError};
 use grn_core::scalar::{NumberType, Q8_24};
 use grn_link::{Client, LinkError, Patience};
@@ -116,6 +117,7 @@ pub fn simulate(
     config: SwarmConfig,
     number: NumberType,
     emulation: &Emulation,
+    observer: &mut dyn Observer,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, EmulationError> {
     // Sockets are removed when the emulators have ended.
@@ -125,10 +127,13 @@ pub fn simulate(
         started.map_err(|error| EmulationError::Robot(robot, error))
     };
     let emulated = (0..emulation.robots).map(start).collect::<Result<Vec<_>, _>>()?;
-    Ok(match number {
-        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), watch)?,
-        NumberType::Q8_24 => run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), watch)?,
-    })
+    let simulation = match number {
+        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), observer, watch),
+        NumberType::Q8_24 => {
+            run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), observer, watch)
+        }
+    };
+    Ok(simulation?)
 }
 
 /// The brains of a swarm: emulated ones for the first robots, native ones for the rest.

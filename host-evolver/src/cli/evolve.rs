@@ -97,10 +97,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Ok(Answer::No);
     }
     let robots = config.robots;
-    let simulation = watched(&run.path("knee.grn"), &knee, &scenario, config, NumberType::F32, &stop);
+    let mut recorder = simulate::recorder(&scenario, &config);
+    let knee_path = run.path("knee.grn");
+    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop);
     // World, swarm and models were checked before the search.
     let simulation = simulation.map_err(Failure::of_program)?;
-    for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
+    for (name, content) in simulate::files(&simulation, recorder.trace(), &scenario, &knee) {
         contents.insert(format!("simulation/{name}"), content);
     }
     run.finish(&contents)?;

@@ -9,6 +9,7 @@ use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN,
 use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
+use firmware_sim::trace::{Observer, Recorder, Trace, TraceHeader};
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
@@ -54,8 +55,7 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale, allow_hyphen_values = true)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs, and every
-    /// tick is kept: a run of 12 robots may take 11 simulated hours.
+    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
     #[arg(long, default_value_t = DEFAULT_SPEED, value_parser = options::speed, allow_hyphen_values = true)]
     speed: f64,
     /// Number type the robots compute in.
@@ -70,7 +70,8 @@ pub struct Arguments {
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg.
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg. A trace has every tick, or of a run that is too long for
+    /// the memory every second, fourth, ….
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -107,12 +108,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
-    if let Some(lock) = &lock {
-        keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
-    }
+    let simulation = match &lock {
+        Some(lock) => {
+            let mut recorder = recorder(&scenario, &config);
+            let simulation = simulated(arguments, &blob, &scenario, config, &mut recorder, &stop)?;
+            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob))?;
+            simulation
+        }
+        None => simulated(arguments, &blob, &scenario, config, &mut (), &stop)?,
+    };
     if arguments.json {
-        output::product_json(&metrics_json(&simulation))?;
+        output::product_json(&metrics_json(&simulation, &scenario))?;
     } else {
         output::report(table(&simulation));
     }
@@ -140,11 +146,12 @@ fn simulated(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
     let number = arguments.number;
     match arguments.target {
-        Target::Native => watched(&arguments.blob, blob, scenario, config, number, stop),
+        Target::Native => watched(&arguments.blob, blob, scenario, config, number, observer, stop),
         #[cfg(unix)]
         Target::Qemu => {
             let image = arguments.image.clone().unwrap_or_else(|| {
@@ -156,7 +163,7 @@ fn simulated(
             let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.robots));
             let emulation = Emulation { image, robots };
             with_progress(stop, |watch| {
-                let simulated = emulation::simulate(blob, scenario, config, number, &emulation, watch);
+                let simulated = emulation::simulate(blob, scenario, config, number, &emulation, observer, watch);
                 simulated.map_err(|error| match error {
                     EmulationError::Simulation(error) => of_blob(&arguments.blob)(error),
                     error => error.into(),
@@ -207,9 +214,12 @@ pub fn watched(
     scenario: &Scenario,
     config: SwarmConfig,
     number: NumberType,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(stop, |watch| simulation::simulate(blob, scenario, config, number, watch).map_err(of_blob(path)))
+    with_progress(stop, |watch| {
+        simulation::simulate(blob, scenario, config, number, observer, watch).map_err(of_blob(path))
+    })
 }
 
 /// Names the blob where that is what is wrong.
@@ -234,21 +244,27 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
+/// The most memory that the record of a run takes, bytes. To write it as text and as bytes takes four times as much more.
+const MOST_RECORD: usize = 100_000_000;
+
+/// Keeps a run for its files.
+pub fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
+    Recorder::new(TraceHeader::of(scenario, config), MOST_RECORD)
+}
+
 /// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let mut csv = Vec::new();
-    simulation.trace.to_csv(&mut csv).map_err(|error| Failure::Program(format!("trace.csv: {error}")))?;
-    let metrics = format!("{:#}\n", metrics_json(simulation));
+pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Contents {
+    let metrics = format!("{:#}\n", metrics_json(simulation, scenario));
     let mut contents = Contents::from([
-        ("trace.bin".into(), simulation.trace.encode()),
-        ("trace.csv".into(), csv),
+        ("trace.bin".into(), trace.encode()),
+        ("trace.csv".into(), trace.to_csv()),
         ("metrics.json".into(), metrics.into_bytes()),
     ]);
-    match figures::run(simulation, scenario, blob) {
+    match figures::run(simulation, trace, scenario, blob) {
         Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
         Err(error) => output::notice(format_args!("no trace.svg: {error}")),
     }
-    Ok(contents)
+    contents
 }
 
 /// Takes the folder of `--out` before anything is computed for it.
@@ -272,13 +288,13 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     Ok(())
 }
 
-fn metrics_json(simulation: &Simulation) -> serde_json::Value {
+fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Value {
     let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
     json!({
         "grn": files::VERSION,
         "blob": identity,
         "number": simulation.number,
-        "scenario": simulation.trace.header().scenario,
+        "scenario": scenario.name(),
         "seed": simulation.config.seed,
         "robots": simulation.config.robots,
         "scale": simulation.config.scale,

@@ -160,7 +160,7 @@ impl Emulation {
             return Err(StartError::OtherNumber { image, found, wanted: number });
         }
         let bytes = blob_bytes(blob).map_err(StartError::Blob)?;
-        let brain = RemoteBrain::start(client, &bytes, blob.identity(), robot as u8).map_err(StartError::Link)?;
+        let brain = RemoteBrain::start(client, &bytes, blob.identity(), robot as u16).map_err(StartError::Link)?;
         Ok(Box::new(brain))
     }
 }

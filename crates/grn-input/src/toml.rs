@@ -157,7 +157,7 @@ fn wrong_type(message: &str) -> Option<String> {
     let needed = match needed {
         "f64" => "a number",
         "i64" if found.starts_with("floating point") => "a whole number, without point and exponent",
-        "i64" if found.starts_with("integer") => "a smaller whole number",
+        "i64" if found.starts_with("integer") => return Some("must be a smaller whole number".into()),
         "i64" => "a whole number",
         "a sequence" => "a list",
         "a map" => "a table",

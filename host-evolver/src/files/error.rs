@@ -107,7 +107,8 @@ pub fn is_fault_of_system(error: &io::Error) -> bool {
             | Kind::NetworkUnreachable
             | Kind::AddrNotAvailable
     );
-    !is_of_input && !(cfg!(unix) && error.raw_os_error().is_some_and(|code| UNNAMED.contains(&code)))
+    let is_unnamed = cfg!(unix) && error.raw_os_error().is_some_and(|code| UNNAMED.contains(&code));
+    !(is_of_input || is_unnamed)
 }
 
 impl fmt::Display for FileError {

@@ -64,7 +64,9 @@ mod tests {
 
     #[test]
     fn share_and_length_are_as_asked() {
-        for (share, length, rows) in [(0.3, 0.0, 1.0 / 0.7), (0.1, 0.5, 16.0), (0.5, 1.0, 32.0), (0.02, 0.001, 1.0 / 0.98)] {
+        for (share, length, rows) in
+            [(0.3, 0.0, 1.0 / 0.7), (0.1, 0.5, 16.0), (0.5, 1.0, 32.0), (0.02, 0.001, 1.0 / 0.98)]
+        {
             let (failures, row) = measured(Bursts::new(share, length, 1.0 / 32.0));
             assert!((failures - share).abs() < 0.02 && (row / rows - 1.0).abs() < 0.06, "{share}: {failures} {row}");
         }

@@ -112,6 +112,8 @@ mod tests {
             (lab(&|lab| lab.timing.tick_s = 0.3), "timing.tick_s", "0.3"),
             (SwarmConfig { scale: f64::NAN, ..good.clone() }, "scale", "NaN"),
             (SwarmConfig { target_speed_m_per_s: 0.2, ..good.clone() }, "target_speed_m_per_s", "0.2"),
+            (SwarmConfig { target_speed_m_per_s: 1e300, ..good.clone() }, "target_speed_m_per_s", "1e300"),
+            (SwarmConfig { target_speed_m_per_s: -5e-324, ..good.clone() }, "target_speed_m_per_s", "-5e-324"),
             (SwarmConfig { settle_s: -1.0, ..good.clone() }, "settle_s", "-1.0"),
             (SwarmConfig { stops: vec![Stop { robot: 12, tick: 0 }], ..good.clone() }, "stops.robot", "12"),
         ];

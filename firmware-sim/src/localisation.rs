@@ -77,8 +77,17 @@ pub struct Track {
 impl Tracker {
     /// The system of a laboratory.
     pub fn new(localisation: &lab::Localisation) -> Self {
-        let lab::Localisation { rate_hz, latency_s, noise_m, noise_deg, drift_m, drift_deg, drift_s, dropout, dropout_s } =
-            *localisation;
+        let lab::Localisation {
+            rate_hz,
+            latency_s,
+            noise_m,
+            noise_deg,
+            drift_m,
+            drift_deg,
+            drift_s,
+            dropout,
+            dropout_s,
+        } = *localisation;
         Tracker {
             period_us: (1e6 / rate_hz) as u64,
             latency_us: (latency_s * 1e6) as u64,
@@ -134,7 +143,8 @@ impl Tracker {
     fn error(&self, track: &mut Track, now_us: u64) -> PoseError {
         let [noise_m, noise_rad] = self.noise;
         let stream = &mut track.stream;
-        let position = if noise_m > 0.0 { Vector::new(stream.normal(), stream.normal()) * noise_m } else { Vector::ZERO };
+        let position =
+            if noise_m > 0.0 { Vector::new(stream.normal(), stream.normal()) * noise_m } else { Vector::ZERO };
         let heading = if noise_rad > 0.0 { stream.normal() * noise_rad } else { 0.0 };
         let noise = PoseError { position, heading };
         if self.drift == [0.0; 2] {
@@ -227,11 +237,18 @@ mod tests {
                 .collect();
             [0, 1].map(|i| (errors.iter().map(|e| e[i] * e[i]).sum::<f64>() / errors.len() as f64).sqrt())
         };
-        let [position, heading] = deviation(lab::Localisation { noise_m: 0.02, noise_deg: 5.0, ..perfect() }, 20_000, 1);
-        assert!((position / 0.02 - 1.0).abs() < 0.02 && (heading / 5f64.to_radians() - 1.0).abs() < 0.03, "{position} {heading}");
+        let [position, heading] =
+            deviation(lab::Localisation { noise_m: 0.02, noise_deg: 5.0, ..perfect() }, 20_000, 1);
+        assert!(
+            (position / 0.02 - 1.0).abs() < 0.02 && (heading / 5f64.to_radians() - 1.0).abs() < 0.03,
+            "{position} {heading}"
+        );
         let drifting = lab::Localisation { drift_m: 0.05, drift_deg: 5.0, drift_s: 2.0, ..perfect() };
         let [position, heading] = deviation(drifting, 640_000, 320);
-        assert!((position / 0.05 - 1.0).abs() < 0.1 && (heading / 5f64.to_radians() - 1.0).abs() < 0.1, "{position} {heading}");
+        assert!(
+            (position / 0.05 - 1.0).abs() < 0.1 && (heading / 5f64.to_radians() - 1.0).abs() < 0.1,
+            "{position} {heading}"
+        );
         // From one moment to the next it hardly moves.
         let found = fixes(lab::Localisation { drift_s: 30.0, ..drifting }, 3200);
         let step = |pair: &[(u64, Fix)]| (pair[1].1.position[0] - pair[0].1.position[0]).abs();

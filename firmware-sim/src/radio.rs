@@ -223,14 +223,7 @@ impl Ether {
     }
 
     /// Whether nothing in between stops a message, and whether an own one comes back.
-    fn passes(
-        &self,
-        sender: u16,
-        own: u16,
-        draws: Draws,
-        position: Point<f64>,
-        obstruction: &Obstruction<'_>,
-    ) -> bool {
+    fn passes(&self, sender: u16, own: u16, draws: Draws, position: Point<f64>, obstruction: &Obstruction<'_>) -> bool {
         if sender == own {
             return f64::from(draws.at(u32::from(sender) | 3 << 16)) < self.radio.echo * 4_294_967_296.0;
         }

@@ -107,12 +107,7 @@ mod tests {
     use crate::random::Component;
     use std::vec::Vec;
 
-    const EYE: Eye = Eye {
-        position: Vector::new(1.0, 2.0),
-        range: 5.0,
-        error: PoseError::NONE,
-        noise_m: 0.0,
-    };
+    const EYE: Eye = Eye { position: Vector::new(1.0, 2.0), range: 5.0, error: PoseError::NONE, noise_m: 0.0 };
 
     fn stream() -> Stream {
         Stream::new(1, Component::Sensors, 0)

@@ -58,7 +58,8 @@ impl Clock {
         };
         self.ticks += 1;
         let next_ns = self.shown_ns(self.ticks);
-        self.next_us = self.phase_us + if self.rate == 1.0 { next_ns / 1000 } else { (next_ns as f64 * self.rate * 1e-3) as u64 };
+        self.next_us =
+            self.phase_us + if self.rate == 1.0 { next_ns / 1000 } else { (next_ns as f64 * self.rate * 1e-3) as u64 };
         (since / 1000) as u32
     }
 }

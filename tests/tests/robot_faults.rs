@@ -113,12 +113,8 @@ fn channel() -> Scenario {
 fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
     for (model, number) in MODELS.iter().flat_map(|model| NumberType::ALL.map(|number| (model, number))) {
         for seed in 1..=8 {
-            let config = SwarmConfig {
-                seed,
-                target_speed_m_per_s: 0.03,
-                stops: stops(seed as usize),
-                ..SwarmConfig::default()
-            };
+            let config =
+                SwarmConfig { seed, target_speed_m_per_s: 0.03, stops: stops(seed as usize), ..SwarmConfig::default() };
             let run = simulate(&blob(model), &channel(), config, number, &mut (), |_| ControlFlow::Continue(()));
             let metrics = run.unwrap().unwrap().metrics;
             let away = (metrics.lost_robots, metrics.strayed_robots, metrics.wall_contacts);

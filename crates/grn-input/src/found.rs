@@ -52,7 +52,9 @@ impl Found {
             () if begins("<") => Found::Picture,
             () if has("[[method]]") || has("[[scenario]]") => Found::Campaign,
             () if has("[morphogen]") || has("[[target]]") || has("[ring]") => Found::Scenario,
-            () if ["[localisation]", "[radio]", "[wheels]", "[timing]", "[proximity]"].into_iter().any(has) => Found::Laboratory,
+            () if ["[localisation]", "[radio]", "[wheels]", "[timing]", "[proximity]"].into_iter().any(has) => {
+                Found::Laboratory
+            }
             () => Found::Text,
         }
     }

@@ -19,7 +19,8 @@ pub fn find(name_or_path: &str) -> Result<Laboratory, InputError> {
     let path = Path::new(name_or_path);
     if !name_or_path.contains(['.', '/', '\\']) && !path.exists() {
         let known = Shipped::ALL.map(Shipped::name).join(", ");
-        let way_out = format!("no laboratory of this name is shipped ({known}) and no file is called so; give one or the other");
+        let way_out =
+            format!("no laboratory of this name is shipped ({known}) and no file is called so; give one or the other");
         return Err(InputError::new("--lab", name_or_path, way_out));
     }
     parse(&read_text(path, Found::Laboratory)?).map_err(|error| error.in_file(path))
@@ -77,7 +78,6 @@ pub fn set(laboratory: Laboratory, assignment: &str) -> Result<Laboratory, Input
 pub fn write(laboratory: &Laboratory) -> String {
     toml::to_string(laboratory).unwrap_or_default()
 }
-
 
 /// The value of a key with dots.
 fn entry<'t>(table: &'t mut Table, key: &str) -> Option<&'t mut Value> {

@@ -43,4 +43,3 @@ pub(super) fn check_payload(payload_bytes: usize) -> Result<(), InputError> {
     );
     Err(InputError::new("radio.payload_bytes", payload_bytes, why))
 }
-

@@ -128,7 +128,8 @@ fn losses_are_as_frequent_as_asked_alone_or_in_rows() {
     assert!((share(&alone) - 0.7).abs() < 0.015);
     let rows = deliveries(&radio(|radio| (radio.loss, radio.burst_s) = (0.3, 1.0)), 100_000);
     assert!((share(&rows) - 0.7).abs() < 0.03, "{}", share(&rows));
-    let changes = |arrived: &[bool]| arrived.windows(2).filter(|pair| pair[0] != pair[1]).count() as f64 / arrived.len() as f64;
+    let changes =
+        |arrived: &[bool]| arrived.windows(2).filter(|pair| pair[0] != pair[1]).count() as f64 / arrived.len() as f64;
     assert!((changes(&alone) - 0.42).abs() < 0.02 && changes(&rows) < 0.03);
     // Of a range of 0.7 m ± 0.14 m, 0.65 m is within in 64 of 100 cases.
     let noisy = deliveries(&radio(|radio| radio.range_noise = 0.2), 20_000);

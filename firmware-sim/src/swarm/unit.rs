@@ -56,7 +56,14 @@ pub(super) struct Unit<B> {
 
 impl<B: Brain> Unit<B> {
     /// Robot number `number` of this swarm, at its start.
-    pub fn new(number: usize, brain: B, config: &SwarmConfig, tracker: &Tracker, ether: &Ether, samples: usize) -> Self {
+    pub fn new(
+        number: usize,
+        brain: B,
+        config: &SwarmConfig,
+        tracker: &Tracker,
+        ether: &Ether,
+        samples: usize,
+    ) -> Self {
         let SwarmConfig { seed, ref lab, .. } = *config;
         Unit {
             number,

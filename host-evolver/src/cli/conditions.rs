@@ -18,7 +18,9 @@ impl Conditions {
     /// The laboratory that was asked for.
     pub fn laboratory(&self) -> Result<Laboratory, Failure> {
         let found = lab::find(&self.lab)?;
-        let set = |laboratory, assignment: &String| lab::set(laboratory, assignment).map_err(|error| in_set(assignment, error));
+        let set = |laboratory, assignment: &String| {
+            lab::set(laboratory, assignment).map_err(|error| in_set(assignment, error))
+        };
         self.set.iter().try_fold(found, set)
     }
 }

@@ -50,9 +50,12 @@ impl Experiment<'_> {
     /// One line a reality, and everything else.
     pub fn files(&self, robustness: &Robustness) -> Result<Contents, Failure> {
         let mut csv = csv::Writer::from_writer(Vec::new());
-        robustness.realities.iter().try_for_each(|reality| csv.serialize(reality)).map_err(about("realities.csv"))?;
-        let csv = csv.into_inner().map_err(|error| Failure::System(format!("realities.csv: {error}")))?;
-        let json = serde_json::to_string_pretty(&self.json(robustness))? + "\n";
+        let unwritten = |error: String| Failure::Program(format!("realities.csv: {error}"));
+        for reality in &robustness.realities {
+            csv.serialize(reality).map_err(|error| unwritten(error.to_string()))?;
+        }
+        let csv = csv.into_inner().map_err(|error| unwritten(error.to_string()))?;
+        let json = files::json(&self.json(robustness));
         Ok(Contents::from([("realities.csv".into(), csv), ("realities.json".into(), json.into_bytes())]))
     }
 

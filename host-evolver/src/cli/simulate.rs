@@ -2,9 +2,9 @@
 
 use super::conditions::Conditions;
 use super::robustness;
-use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
-use crate::emulation::{self, Emulation};
+use crate::emulation::{self, Emulation, EmulationError};
 use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::realities;
@@ -50,27 +50,27 @@ pub struct Arguments {
     /// The world.
     scenario: PathBuf,
     /// Seed of everything random.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
     /// How many robots, two of them mothers [default: the laboratory's].
-    #[arg(long, value_parser = robots)]
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
     robots: Option<usize>,
     #[command(flatten)]
     conditions: Conditions,
     /// Simulate in so many laboratories drawn around this one, and say in how many of them it works.
-    #[arg(long, value_name = "N", value_parser = robustness::count, conflicts_with_all = ["reality", "target"])]
+    #[arg(long, value_name = "N", value_parser = robustness::count, allow_hyphen_values = true, conflicts_with_all = ["reality", "target"])]
     realities: Option<u64>,
     /// Simulate in one of these laboratories, by its number; 0 is the laboratory itself.
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = robustness::number)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = robustness::number, allow_hyphen_values = true)]
     reality: u64,
     /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
-    #[arg(long, value_parser = options::threads)]
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// World metres per scenario metre [default: the blob's].
-    #[arg(long, value_parser = options::scale)]
+    #[arg(long, value_parser = options::scale, allow_hyphen_values = true)]
     scale: Option<f32>,
     /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
-    #[arg(long, default_value_t = DEFAULT_SPEED)]
+    #[arg(long, default_value_t = DEFAULT_SPEED, value_parser = options::speed, allow_hyphen_values = true)]
     speed: f64,
     /// Number type the robots compute in.
     #[arg(long, default_value = "f32")]
@@ -78,9 +78,9 @@ pub struct Arguments {
     /// Where controllers run: all in this process, or some in QEMU, from the image that is flashed.
     #[arg(long, default_value = "native")]
     target: Target,
-    /// How many of the robots are emulated with --target qemu.
-    #[arg(long, default_value_t = DEFAULT_EMULATED, value_parser = robots)]
-    emulated: usize,
+    /// How many of the robots are emulated with --target qemu [default: 4, or all if there are fewer].
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
+    emulated: Option<usize>,
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
@@ -119,6 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         Some(count) => config.with_robots(count),
         None => config,
     };
+    check_emulation(arguments, config.lab.robots.count)?;
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
@@ -137,7 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         Some(lock) => {
             let mut recorder = recorder(&scenario, &config);
             let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &mut recorder, &stop))?;
-            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob)?)?;
+            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob))?;
             simulation
         }
         None => pool.install(|| simulated(arguments, &blob, &scenario, config, &mut (), &stop))?,
@@ -148,6 +149,22 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         output::report(table(&simulation));
     }
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
+}
+
+/// Refuses options of emulators without emulators, which would not do what they say, and more emulators than robots.
+fn check_emulation(arguments: &Arguments, robots: usize) -> Result<(), Failure> {
+    let Arguments { target, emulated, image, .. } = arguments;
+    let without = |option: String| {
+        Err(Failure::Input(format!("{option} is for robots in emulators; add --target qemu, or leave it out")))
+    };
+    match (target, image, emulated) {
+        (Target::Native, Some(image), _) => without(format!("--image {}", image.display())),
+        (Target::Native, None, Some(emulated)) => without(format!("--emulated {emulated}")),
+        (Target::Qemu, _, &Some(emulated)) if emulated > robots => {
+            Err(Failure::Input(format!("--emulated {emulated}: must be at most the number of robots, {robots}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn simulated(
@@ -169,10 +186,14 @@ fn simulated(
                     NumberType::Q8_24 => "robot-q8_24",
                 })
             });
-            let emulation = Emulation { image, robots: arguments.emulated.min(config.lab.robots.count) };
-            let path = &arguments.blob;
-            with_progress(path, stop, |watch| {
-                emulation::simulate(blob, scenario, config, number, &emulation, observer, watch)
+            let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.lab.robots.count));
+            let emulation = Emulation { image, robots };
+            with_progress(stop, |watch| {
+                let simulated = emulation::simulate(blob, scenario, config, number, &emulation, observer, watch);
+                simulated.map_err(|error| match error {
+                    EmulationError::Simulation(error) => of_blob(&arguments.blob)(error),
+                    error => error.into(),
+                })
             })
         }
         #[cfg(not(unix))]
@@ -215,13 +236,22 @@ pub fn watched(
     observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, observer, watch))
+    with_progress(stop, |watch| {
+        simulation::simulate(blob, scenario, config, number, observer, watch).map_err(of_blob(path))
+    })
+}
+
+/// Names the blob where that is what is wrong.
+fn of_blob(path: &Path) -> impl Fn(SimulationError) -> Failure {
+    move |error| match error {
+        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(path.display())(error),
+        SimulationError::Config(_) | SimulationError::Brain(_) => error.into(),
+    }
 }
 
 fn with_progress(
-    blob: &Path,
     stop: &AtomicBool,
-    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
+    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, Failure>,
 ) -> Result<Simulation, Failure> {
     let style = progress::style("simulating {bar:40} {percent:>3} % · {left}", &progress::Found::default());
     let bar = ProgressBar::new(1000).with_style(style);
@@ -230,10 +260,6 @@ fn with_progress(
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.finish_and_clear();
-    let result = result.map_err(|error| match &error {
-        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(blob.display())(error),
-        SimulationError::Config(_) | SimulationError::Brain(_) | SimulationError::Emulator(_) => error.into(),
-    });
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
@@ -246,8 +272,8 @@ pub fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
 }
 
 /// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, scenario))? + "\n";
+pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Contents {
+    let metrics = format!("{:#}\n", metrics_json(simulation, scenario));
     let mut contents = Contents::from([
         ("trace.bin".into(), trace.encode()),
         ("trace.csv".into(), trace.to_csv()),
@@ -257,18 +283,12 @@ pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: 
         Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
         Err(error) => output::notice(format_args!("no trace.svg: {error}")),
     }
-    Ok(contents)
+    contents
 }
 
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
-    let manifest = folder.join("manifest.json");
-    if manifest.exists() {
-        let fault =
-            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
-        return Err(about(manifest.display())(fault));
-    }
-    let lock = FolderLock::take(folder, &this_command())?;
+    let lock = take_folder(folder)?;
     FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }

@@ -2,8 +2,10 @@
 
 use core::error::Error;
 use core::fmt;
+use grn_core::network::DEFAULT_GENES;
 use grn_core::robot::{Command, Controller, Percept};
 use grn_core::scalar::Scalar;
+use std::sync::Arc;
 
 /// A robot's controller. The flashed controller, a scripted one for tests or one behind a link are all brains.
 pub trait Brain: Send {
@@ -12,11 +14,23 @@ pub trait Brain: Send {
     /// # Errors
     /// [`BrainError`] when there is no answer, such as from a remote brain whose link broke; it ends the run.
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError>;
+
+    /// Begins anew, as after its robot was switched off and on: it knows nothing of before.
+    ///
+    /// # Errors
+    /// [`BrainError`] if it cannot, as brains that do not say how; it ends the run.
+    fn reboot(&mut self) -> Result<(), BrainError> {
+        Err(BrainError::new("this brain cannot begin anew; simulate it without the fault reboot"))
+    }
 }
 
 impl<B: Brain + ?Sized> Brain for Box<B> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         (**self).tick(percept)
+    }
+
+    fn reboot(&mut self) -> Result<(), BrainError> {
+        (**self).reboot()
     }
 }
 
@@ -24,6 +38,33 @@ impl<B: Brain + ?Sized> Brain for Box<B> {
 impl<S: Scalar, const N: usize> Brain for Controller<S, N> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         Controller::tick(self, percept).map_err(BrainError::new)
+    }
+}
+
+/// A robot's own controller that can begin anew.
+#[derive(Clone, Debug)]
+pub struct Onboard<S, const N: usize = DEFAULT_GENES> {
+    running: Controller<S, N>,
+    /// As it was loaded; all robots of a swarm share it.
+    loaded: Arc<Controller<S, N>>,
+    robot: u16,
+}
+
+impl<S: Scalar, const N: usize> Onboard<S, N> {
+    /// The controller that was loaded, on robot number `robot`.
+    pub fn new(loaded: &Arc<Controller<S, N>>, robot: u16) -> Self {
+        Onboard { running: Controller::clone(loaded).on_robot(robot), loaded: Arc::clone(loaded), robot }
+    }
+}
+
+impl<S: Scalar, const N: usize> Brain for Onboard<S, N> {
+    fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
+        Brain::tick(&mut self.running, percept)
+    }
+
+    fn reboot(&mut self) -> Result<(), BrainError> {
+        self.running = Controller::clone(&self.loaded).on_robot(self.robot);
+        Ok(())
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::lab::Laboratory;
 use grn_input::{InputError, Range};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
 
 /// A run: the laboratory, scale and timing. Metres are real ones, in which a robot is 7 cm across.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,33 +17,14 @@ pub struct SwarmConfig {
     pub target_speed_m_per_s: f64,
     /// How long the targets rest at their starts while the pattern forms, seconds, 0..=3600.
     pub settle_s: f64,
-    /// Robots that break down during the run; none by default.
-    pub stops: Vec<Stop>,
     /// Conditions.
     pub lab: Laboratory,
-}
-
-/// A robot that breaks down: from a frame on its wheels stand still and it neither sends nor computes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Stop {
-    /// Which one, below the number of robots.
-    pub robot: usize,
-    /// The first frame without it.
-    pub tick: u64,
 }
 
 impl Default for SwarmConfig {
     /// The ideal laboratory at a quarter of the scenario's scale; targets rest for 10 s and then move at 20 mm/s.
     fn default() -> Self {
-        SwarmConfig {
-            seed: 1,
-            scale: 0.25,
-            target_speed_m_per_s: 0.02,
-            settle_s: 10.0,
-            stops: Vec::new(),
-            lab: Laboratory::default(),
-        }
+        SwarmConfig { seed: 1, scale: 0.25, target_speed_m_per_s: 0.02, settle_s: 10.0, lab: Laboratory::default() }
     }
 }
 
@@ -62,26 +42,13 @@ impl SwarmConfig {
     /// # Errors
     /// The first field out of range; those of the laboratory by their key there.
     pub fn check(&self) -> Result<(), InputError> {
-        let &SwarmConfig { seed: _, scale, target_speed_m_per_s, settle_s, ref stops, ref lab } = self;
+        let &SwarmConfig { seed: _, scale, target_speed_m_per_s, settle_s, ref lab } = self;
         lab.clone().checked()?;
         Range::new(f64::MIN_POSITIVE, 10.0, "").check("scale", scale)?;
         let speeds = Range::new(f64::MIN_POSITIVE, 0.127, "m/s (a robot's top speed is 0.142 m/s)");
         speeds.check("target_speed_m_per_s", target_speed_m_per_s)?;
         Range::new(0.0, 3600.0, "seconds").check("settle_s", settle_s)?;
-        let robots = Range::new(0, lab.robots.count.saturating_sub(1), "(counted from 0)");
-        stops.iter().try_for_each(|stop| robots.check("stops.robot", stop.robot).map(|_| ()))
-    }
-
-    /// For every robot the first frame in which it stands still for good, if it does.
-    pub fn stop_ticks(&self) -> Vec<Option<u64>> {
-        let first = |robot| self.stops.iter().filter(|stop| stop.robot == robot).map(|stop| stop.tick).min();
-        (0..self.lab.robots.count).map(first).collect()
-    }
-
-    /// The ticks in which a robot breaks down while the swarm is under way, rising.
-    pub fn disturbances(&self) -> Vec<u64> {
-        let ticks: BTreeSet<u64> = self.stops.iter().map(|stop| stop.tick).filter(|&tick| tick > 0).collect();
-        ticks.into_iter().collect()
+        Ok(())
     }
 }
 
@@ -115,7 +82,6 @@ mod tests {
             (SwarmConfig { target_speed_m_per_s: 1e300, ..good.clone() }, "target_speed_m_per_s", "1e300"),
             (SwarmConfig { target_speed_m_per_s: -5e-324, ..good.clone() }, "target_speed_m_per_s", "-5e-324"),
             (SwarmConfig { settle_s: -1.0, ..good.clone() }, "settle_s", "-1.0"),
-            (SwarmConfig { stops: vec![Stop { robot: 12, tick: 0 }], ..good.clone() }, "stops.robot", "12"),
         ];
         for (config, key, value) in cases {
             let error = config.check().unwrap_err();

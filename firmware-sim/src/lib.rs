@@ -34,6 +34,7 @@ pub mod brain;
 pub mod bursts;
 pub mod config;
 pub mod contacts;
+pub mod faults;
 pub mod flash;
 pub mod geometry;
 pub mod grid;
@@ -51,7 +52,8 @@ pub mod timing;
 pub mod trace;
 
 pub use brain::{Brain, BrainError};
-pub use config::{Stop, SwarmConfig};
+pub use config::SwarmConfig;
+pub use faults::FaultPlan;
 pub use lab::Laboratory;
 pub use metrics::{Meter, Metrics, MetricsOptions};
 pub use scenario::{InputError, Scenario};

@@ -71,6 +71,8 @@ pub struct Track {
     /// Standard normal values of x, y and heading, of this second's beginning and end.
     drift: [[f64; 3]; 2],
     drift_from_us: u64,
+    /// By how much it jumps at present, metres.
+    jump: Vector<f64>,
     error: PoseError,
 }
 
@@ -111,6 +113,7 @@ impl Tracker {
             on_its_way: VecDeque::new(),
             drift: [begin; 2],
             drift_from_us: 0,
+            jump: Vector::ZERO,
             error: PoseError::NONE,
         };
         track.drift[1] = self.next_drift(begin, &mut track.stream);
@@ -137,6 +140,7 @@ impl Tracker {
             return;
         }
         track.error = self.error(track, now_us);
+        track.error.position = track.error.position + track.jump;
         track.on_its_way.push_back((now_us, track.error.applied(pose)));
     }
 
@@ -180,6 +184,11 @@ impl Tracker {
 }
 
 impl Track {
+    /// From now on poses are off by this much more than usual, metres.
+    pub fn jump(&mut self, offset: Vector<f64>) {
+        self.jump = offset;
+    }
+
     /// The error of the pose that was measured last.
     pub fn error(&self) -> PoseError {
         self.error

@@ -9,8 +9,9 @@ mod recovery;
 mod samples;
 mod whereabouts;
 
+use crate::faults::Absences;
 use crate::geometry::{Walls, length_squared};
-use crate::trace::{Frame, Observer, RobotState, metres};
+use crate::trace::{Frame, Observer, metres};
 pub use bearings::Bearings;
 use clearance::Clearance;
 use core::f64::consts::{PI, TAU};
@@ -39,12 +40,11 @@ pub struct MetricsOptions<'a> {
     /// Ticks per second, at least 1.
     pub ticks_per_second: u16,
     /// The ticks in which something disturbed the swarm, rising, as from
-    /// [`SwarmConfig::disturbances`](crate::config::SwarmConfig::disturbances).
+    /// [`FaultPlan::disturbances`](crate::faults::FaultPlan::disturbances).
     pub disturbances: &'a [u64],
-    /// For every robot the tick from which on it is broken down, if it is, as from
-    /// [`SwarmConfig::stop_ticks`](crate::config::SwarmConfig::stop_ticks); robots beyond the list's end never are. A
-    /// broken robot counts only as something that others may touch.
-    pub stop_ticks: &'a [Option<u64>],
+    /// When which robot is out of service. Then it counts only as something that others may touch, and when it is back it is to
+    /// reach the pattern anew.
+    pub absences: &'a Absences,
 }
 
 /// The measures of one run. "After forming" is from [`formed_at_s`](Metrics::formed_at_s) to the end; what needs a
@@ -88,7 +88,7 @@ pub struct Metrics {
     /// Evenness of spacing after forming, 0 to 1, averaged over targets and measured moments: the entropy of the angular gaps
     /// between the robots nearest to a target, as a share of that of equal gaps. `None` too when no target has two.
     pub spacing_evenness: Option<f64>,
-    /// What became of the swarm after each disturbance, robots that are broken down left out of account.
+    /// What became of the swarm after each disturbance, robots that are out of service left out of account.
     pub recoveries: Vec<Recovery>,
 }
 
@@ -132,7 +132,7 @@ pub struct Meter<'a, D> {
 struct Space {
     bearings: Bearings,
     targets: Vec<Point<f64>>,
-    /// The robots that are not broken down.
+    /// The robots that are in service.
     robots: Vec<(usize, Point<f64>)>,
     gaps: Vec<f64>,
 }
@@ -250,7 +250,8 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
         let left_after = self.left_after();
         let working = || {
             let robots = self.robots.iter().enumerate();
-            robots.filter(|(robot, _)| !self.options.is_stopped(*robot, self.last_tick)).map(|(_, robot)| robot)
+            let present = robots.filter(|(robot, _)| self.options.absences.is_present(*robot, self.last_tick));
+            present.map(|(_, robot)| robot)
         };
         let formed_at = self.forming.formed_at();
         let after = formed_at.map(|_| &self.after);
@@ -291,8 +292,14 @@ impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, 
         targets.clear();
         targets.extend(frame.targets_um.iter().map(|&target| metres(target)));
         robots.clear();
-        robots.extend(self.options.working(frame.tick, frame.robots));
         self.robots.resize(frame.robots.len(), Whereabouts::default());
+        for (robot, (state, whereabouts)) in frame.robots.iter().zip(&mut self.robots).enumerate() {
+            if self.options.absences.is_present(robot, frame.tick) {
+                robots.push((robot, metres(state.position_um)));
+            } else {
+                whereabouts.suspend();
+            }
+        }
         self.frames += 1;
         self.last_tick = frame.tick;
         self.observe_encirclement(frame.tick);
@@ -314,18 +321,6 @@ impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, 
 fn nearest(targets: &[Point<f64>], robot: Point<f64>) -> Option<usize> {
     let distances = targets.iter().map(|&target| length_squared(robot - target));
     distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map(|(nearest, _)| nearest)
-}
-
-impl MetricsOptions<'_> {
-    fn is_stopped(&self, robot: usize, tick: u64) -> bool {
-        self.stop_ticks.get(robot).copied().flatten().is_some_and(|stop| tick >= stop)
-    }
-
-    /// The robots that are not broken down, with their positions in metres.
-    fn working<'a>(&'a self, tick: u64, robots: &'a [RobotState]) -> impl Iterator<Item = (usize, Point<f64>)> + 'a {
-        let working = robots.iter().enumerate().filter(move |&(robot, _)| !self.is_stopped(robot, tick));
-        working.map(|(robot, state)| (robot, metres(state.position_um)))
-    }
 }
 
 #[cfg(test)]

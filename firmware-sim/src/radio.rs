@@ -172,6 +172,11 @@ impl Ether {
         heard
     }
 
+    /// What could be heard by now passes a receiver by.
+    pub fn miss(&self, receiver: &mut Receiver) {
+        receiver.next_frame = receiver.next_frame.max(self.now.saturating_sub(self.latency_frames));
+    }
+
     /// Sorts those of one frame's messages that the receiver does not miss in among the nearest.
     fn offer(
         &self,

@@ -34,6 +34,8 @@ pub enum Component {
     Wheels = 12,
     /// Wrong bytes of messages.
     Corruption = 13,
+    /// What goes wrong with robots.
+    Faults = 14,
 }
 
 /// A stream of random numbers (PCG XSH-RR 64/32).

@@ -8,6 +8,7 @@
 //!
 //! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
+mod ailments;
 mod placement;
 mod unit;
 
@@ -15,8 +16,10 @@ use crate::body::Pose;
 use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
 use crate::contacts::{ContactCounts, Contacts};
+use crate::faults::{Fault, FaultPlan};
 use crate::geometry::Walls;
 use crate::grid::{Grid, WallIndex};
+use crate::lab::FaultKind;
 use crate::localisation::Tracker;
 use crate::proximity::{ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::Ether;
@@ -98,6 +101,9 @@ pub struct Swarm<B> {
     contacts: Contacts,
     targets: Vec<Point<f64>>,
     tick: u64,
+    faults: FaultPlan,
+    /// Who is carried away when, the next one last.
+    carried: Vec<Fault>,
     recorded: Recorded,
 }
 
@@ -125,8 +131,14 @@ pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError
     set_up(scenario, config).map(|_| ())
 }
 
-/// The world in real metres, and where the robots start.
-fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>), InputError> {
+/// Ticks until all targets of a world in real metres have arrived.
+fn arrival_tick(world: &Scenario, config: &SwarmConfig) -> u64 {
+    let travel_s = world.longest_path() / config.target_speed_m_per_s;
+    ((config.settle_s + travel_s) * f64::from(TICKS_PER_SECOND)).ceil() as u64
+}
+
+/// The world in real metres, where the robots start, and what goes wrong until the targets have arrived.
+fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>, FaultPlan), InputError> {
     config.check()?;
     let world = scenario.scaled(config.scale);
     let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
@@ -148,7 +160,8 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
         );
         InputError::new("robots", robots, way_out)
     })?;
-    Ok((world, poses))
+    let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&world, config))?;
+    Ok((world, poses, faults))
 }
 
 impl<B: Brain> Swarm<B> {
@@ -163,13 +176,13 @@ impl<B: Brain> Swarm<B> {
         config: SwarmConfig,
         mut brain: impl FnMut(usize) -> B,
     ) -> Result<Self, InputError> {
-        let (world, poses) = set_up(scenario, &config)?;
+        let (world, poses, faults) = set_up(scenario, &config)?;
         let lab = &config.lab;
         let n = lab.robots.count;
         let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
-        let unit = |robot| Unit::new(robot, brain(robot), &config, &tracker, &ether, samples.len());
+        let unit = |robot| Unit::new(robot, brain(robot), &config, faults.of(robot), &tracker, &ether, samples.len());
         let units = (0..n).map(unit).collect();
         let mut swarm = Swarm {
             wall_index: WallIndex::new(world.walls(), WALL_REACH),
@@ -186,6 +199,8 @@ impl<B: Brain> Swarm<B> {
             contacts: Contacts::new(n),
             targets: world.targets_at(0.0),
             tick: 0,
+            carried: faults.faults().iter().filter(|fault| fault.kind == FaultKind::Carried).rev().copied().collect(),
+            faults,
             recorded: Recorded::default(),
             world,
             config,
@@ -214,6 +229,11 @@ impl<B: Brain> Swarm<B> {
         self.tick
     }
 
+    /// What goes wrong in the run.
+    pub fn faults(&self) -> &FaultPlan {
+        &self.faults
+    }
+
     /// Where robots are and look now.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
@@ -237,7 +257,7 @@ impl<B: Brain> Swarm<B> {
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
     pub fn arrival_tick(&self) -> u64 {
-        ((self.config.settle_s + self.travel_s()) * f64::from(TICKS_PER_SECOND)).ceil() as u64
+        arrival_tick(&self.world, &self.config)
     }
 
     fn travel_s(&self) -> f64 {
@@ -276,6 +296,7 @@ impl<B: Brain> Swarm<B> {
     /// [`StepError`] when a brain fails; of several, that of the robot with the lowest number. The frame is broken off then,
     /// and the swarm cannot go on.
     pub fn step(&mut self) -> Result<(), StepError> {
+        self.carry_away();
         self.grid.rebuild((0..).zip(self.positions.iter().copied()));
         self.ether.begin(self.tick, &self.positions);
         self.think_and_drive()?;
@@ -294,6 +315,15 @@ impl<B: Brain> Swarm<B> {
         self.move_targets();
         self.record(counts);
         Ok(())
+    }
+
+    fn carry_away(&mut self) {
+        while let Some(fault) = self.carried.pop_if(|next| next.from <= self.tick) {
+            let robot = fault.robot;
+            let pose = placement::carried(&self.world, &self.poses, self.poses[robot], &mut fault.stream());
+            self.poses[robot] = pose;
+            self.positions[robot] = pose.position;
+        }
     }
 
     fn think_and_drive(&mut self) -> Result<(), StepError> {

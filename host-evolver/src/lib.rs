@@ -9,6 +9,7 @@ pub mod cli;
 pub mod emulation;
 pub mod evaluation;
 pub mod evolve;
+pub mod faults;
 pub mod figures;
 pub mod files;
 pub mod model;

@@ -29,6 +29,10 @@ pub struct Reality {
     pub encircled_share: f64,
     /// Median radial error as a share of the ring's radius; `None` if it is unknown or the swarm never formed.
     pub radial_error_share: Option<f64>,
+    /// When the swarm had formed again after the last fault, seconds from the start; `None` without one or if it never did.
+    pub reformed_at_s: Option<f64>,
+    /// Share of the time after that in which every target was encircled; 0 if it never formed again, `None` without a fault.
+    pub reformed_encircled_share: Option<f64>,
     /// Robots off the pattern at the end.
     pub lost_robots: usize,
     /// Robots that left the pattern and came back.
@@ -42,12 +46,15 @@ pub struct Reality {
 impl Reality {
     fn of(number: u64, simulation: &Simulation) -> Reality {
         let metrics = &simulation.metrics;
+        let last = metrics.recoveries.last();
         Reality {
             number,
             works: simulation.verdict().works(),
             formed_at_s: metrics.formed_at_s,
             encircled_share: metrics.encircled_share.unwrap_or(0.0),
             radial_error_share: simulation.radial_error_share(),
+            reformed_at_s: last.and_then(|last| last.reformed_at_s),
+            reformed_encircled_share: last.map(|last| last.encircled_share.unwrap_or(0.0)),
             lost_robots: metrics.lost_robots,
             strayed_robots: metrics.strayed_robots,
             wall_contacts: metrics.wall_contacts,
@@ -149,6 +156,8 @@ mod tests {
             formed_at_s: Some(1.0),
             encircled_share,
             radial_error_share: error,
+            reformed_at_s: None,
+            reformed_encircled_share: None,
             lost_robots: 0,
             strayed_robots: 0,
             wall_contacts: 0,

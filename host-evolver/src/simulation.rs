@@ -1,8 +1,9 @@
 //! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
 
 use crate::evaluation::Model;
-use firmware_sim::brain::Brain;
+use firmware_sim::brain::{Brain, Onboard};
 use firmware_sim::config::SwarmConfig;
+use firmware_sim::faults::FaultPlan;
 use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
@@ -19,6 +20,7 @@ use serde::Serialize;
 use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Share of the time after forming during which every target must be encircled.
 pub const ENOUGH_ENCIRCLED: f64 = 0.98;
@@ -70,6 +72,8 @@ impl Error for SimulationError {
 pub struct Simulation {
     /// What it was worth.
     pub metrics: Metrics,
+    /// What went wrong with robots.
+    pub faults: FaultPlan,
     /// Radius of the model's ring around a lone target in free space, world metres.
     pub ring_radius_m: f64,
     /// The blob that ran.
@@ -154,9 +158,9 @@ pub fn simulate(
 }
 
 /// The controllers of a swarm in this process, by robot number.
-pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Controller<S>, SimulationError> {
-    let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
-    Ok(move |robot: usize| fresh.clone().on_robot(robot as u16))
+pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Onboard<S>, SimulationError> {
+    let loaded = Arc::new(Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?);
+    Ok(move |robot: usize| Onboard::new(&loaded, robot as u16))
 }
 
 /// [`simulate`] with any brains.
@@ -173,13 +177,14 @@ pub(crate) fn run<B: Brain>(
     check_length(scenario, &config).map_err(SimulationError::Config)?;
     let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
-    let (walls, stop_ticks, disturbances) = (swarm.walls().clone(), config.stop_ticks(), config.disturbances());
+    let (walls, faults) = (swarm.walls().clone(), swarm.faults().clone());
+    let (absences, disturbances) = (faults.absences(), faults.disturbances());
     let options = MetricsOptions {
         walls: &walls,
         ring_radius_m: ruler.ring_radius(),
         ticks_per_second: TICKS_PER_SECOND,
         disturbances: &disturbances,
-        stop_ticks: &stop_ticks,
+        absences: &absences,
     };
     let mut meter = Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
     let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
@@ -189,7 +194,7 @@ pub(crate) fn run<B: Brain>(
         Outcome::Finished => {}
     }
     let (metrics, ring_radius_m, blob) = (meter.metrics(), ruler.ring_radius(), blob.identity());
-    Ok(Some(Simulation { metrics, ring_radius_m, blob, number, config }))
+    Ok(Some(Simulation { metrics, faults, ring_radius_m, blob, number, config }))
 }
 
 /// The longest run, simulated hours; who asks for more has mistyped a speed.

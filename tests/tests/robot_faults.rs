@@ -3,9 +3,9 @@
 
 use firmware_sim::body::Pose;
 use firmware_sim::brain::{Brain, BrainError};
-use firmware_sim::lab::{self, Laboratory};
+use firmware_sim::lab::{self, FaultKind, Faults, Laboratory, ScheduledFault};
 use firmware_sim::trace::TraceHeader;
-use firmware_sim::{Recorder, Scenario, Stop, Swarm, SwarmConfig, Trace};
+use firmware_sim::{Recorder, Scenario, Swarm, SwarmConfig, Trace};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
 use grn_core::robot::{Command, Controller, Heard, Message, Percept};
@@ -109,12 +109,18 @@ fn channel() -> Scenario {
     Scenario::load(repository("scenarios/channel.toml")).unwrap()
 }
 
+/// A robot that breaks down for good.
+fn stop(robot: usize, second: usize) -> ScheduledFault {
+    ScheduledFault { kind: FaultKind::Stop, robot: Some(robot), share: None, at_s: second as f64, lasts_s: None }
+}
+
 /// Nobody is lost or strays in the channel when these robots of twelve break down; in every seed, number type and model.
-fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
+fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<ScheduledFault>) {
     for (model, number) in MODELS.iter().flat_map(|model| NumberType::ALL.map(|number| (model, number))) {
         for seed in 1..=8 {
-            let config =
-                SwarmConfig { seed, target_speed_m_per_s: 0.03, stops: stops(seed as usize), ..SwarmConfig::default() };
+            let faults = Faults { at: stops(seed as usize), ..Faults::default() };
+            let lab = Laboratory { faults, ..Laboratory::default() };
+            let config = SwarmConfig { seed, target_speed_m_per_s: 0.03, lab, ..SwarmConfig::default() };
             let run = simulate(&blob(model), &channel(), config, number, &mut (), |_| ControlFlow::Continue(()));
             let metrics = run.unwrap().unwrap().metrics;
             let away = (metrics.lost_robots, metrics.strayed_robots, metrics.wall_contacts);
@@ -127,8 +133,7 @@ fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
 fn nobody_is_left_standing_behind_robots_that_broke_down() {
     let robot = |seed: usize, number: usize| 1 + (seed * 5 + number * 4) % 11;
     for second in [20, 40, 60] {
-        let stop = |seed, number| Stop { robot: robot(seed, number), tick: 32 * (second + 7 * number as u64) };
-        nobody_is_lost_when(|seed| (0..3).map(|number| stop(seed, number)).collect());
+        nobody_is_lost_when(|seed| (0..3).map(|number| stop(robot(seed, number), second + 7 * number)).collect());
     }
 }
 
@@ -136,9 +141,7 @@ fn nobody_is_left_standing_behind_robots_that_broke_down() {
 fn nobody_is_left_standing_behind_pairs_that_broke_down() {
     let robot = |seed: usize, number: usize| 2 + (seed * 5 + number / 2 * 3) % 9 + number % 2;
     for second in [40, 70] {
-        nobody_is_lost_when(|seed| {
-            (0..4).map(|number| Stop { robot: robot(seed, number), tick: 32 * second }).collect()
-        });
+        nobody_is_lost_when(|seed| (0..4).map(|number| stop(robot(seed, number), second)).collect());
     }
 }
 

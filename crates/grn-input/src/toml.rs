@@ -134,11 +134,15 @@ fn shape_error(text: &str, root: &Spanned<DeTable<'_>>, error: &toml::de::Error)
     if message.starts_with("unknown field") {
         let (unknown, known) = names.split_first().map_or(("", &[][..]), |(first, rest)| (*first, rest));
         let key = if within.ends_with(unknown) { within } else { joined(&within, unknown) };
-        let nearest = known.iter().max_by(|a, b| likeness(unknown, a).total_cmp(&likeness(unknown, b)));
-        let meant = nearest.filter(|near| likeness(unknown, near) > 0.75);
-        let meant = meant.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        let meant = meant(unknown, known);
         let expected = format!("unknown key{meant} (known here: {})", known.join(", "));
         return InputError::new(key, "", expected).at(place);
+    }
+    if message.starts_with("unknown variant") {
+        let (unknown, known) = names.split_first().map_or(("", &[][..]), |(first, rest)| (*first, rest));
+        let meant = meant(unknown, known);
+        let expected = format!("unknown name{meant} (known here: {})", known.join(", "));
+        return InputError::new(within, text.get(span).unwrap_or_default(), expected).at(place);
     }
     if message.starts_with("missing field") {
         let missing = names.first().copied().unwrap_or_default();
@@ -176,6 +180,13 @@ fn wrong_type(message: &str) -> Option<String> {
     ];
     let found = kinds.iter().find(|(kind, _)| found.starts_with(kind)).map_or(found, |(_, words)| words);
     Some(format!("must be {needed}, and is {found}"))
+}
+
+/// The known name that is most like an unknown one, as a question.
+fn meant(unknown: &str, known: &[&str]) -> String {
+    let nearest = known.iter().max_by(|a, b| likeness(unknown, a).total_cmp(&likeness(unknown, b)));
+    let meant = nearest.filter(|near| likeness(unknown, near) > 0.75);
+    meant.map_or(String::new(), |near| format!("; did you mean {near}?"))
 }
 
 fn likeness(a: &str, b: &str) -> f64 {

@@ -36,7 +36,7 @@ macro_rules! number {
 ///
 /// Errors of places beyond a metre leave a swarm of robots 7 cm across no shape. Of times on the way as much is kept of each robot's
 /// past.
-pub(super) const NUMBERS: [Number; 29] = [
+pub(super) const NUMBERS: [Number; 38] = [
     number!(bodies.target_radius_m, 0.0, 0.5, "metres", Stays),
     number!(localisation.rate_hz, 0.1, 1000.0, "per second", Varies),
     number!(localisation.latency_s, 0.0, 2.0, "seconds", Varies),
@@ -66,6 +66,15 @@ pub(super) const NUMBERS: [Number; 29] = [
     number!(timing.resolution_s, 0.0, 0.01, "seconds", Stays),
     number!(timing.skew, 0.0, 0.05, "(a share)", Varies),
     number!(realities.spread, 0.0, 0.9, "(a share)", Stays),
+    number!(faults.stop_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.carried_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.reboot_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.radio_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.wheel_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.sensor_dead_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.sensor_shorted_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.tracker_jump_per_hour, 0.0, 60.0, "per robot and hour", Varies),
+    number!(faults.lasts_s, 0.1, 100_000.0, "seconds", Varies),
 ];
 
 impl Laboratory {
@@ -86,6 +95,7 @@ impl Laboratory {
             let key = format!("proximity.bearings_deg[{sensor}]");
             Range::new(-180.0, 180.0, "degrees").check(&key, *bearing)?;
         }
+        self.faults.check(self.robots.count)?;
         check_payload(self.radio.payload_bytes)?;
         Ok(self)
     }

@@ -7,12 +7,14 @@
 //! four uniform draws, near enough to a normal distribution, and never farther off than 3.5 deviations); a *gain* is the half-width of
 //! the uniform distribution from which each robot's own factor is drawn once, around 1.
 
+mod faults;
 mod file;
 mod limits;
 mod packets;
 mod reality;
 mod shipped;
 
+pub use faults::{FaultKind, Faults, ScheduledFault};
 pub use file::{find, parse, set, write};
 pub use packets::{MOST_PACKETS, packets};
 pub use reality::{RealitySpread, run_seed};
@@ -49,6 +51,8 @@ pub struct Laboratory {
     pub wheels: Wheels,
     /// When robots think.
     pub timing: Timing,
+    /// What fails while robots work.
+    pub faults: Faults,
     /// How laboratories of this kind differ from each other.
     pub realities: RealitySpread,
 }
@@ -194,6 +198,7 @@ impl Default for Laboratory {
             proximity: Proximity::default(),
             wheels: Wheels::default(),
             timing: Timing::default(),
+            faults: Faults::default(),
             realities: RealitySpread::default(),
         }
     }

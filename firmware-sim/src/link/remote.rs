@@ -9,6 +9,7 @@ use grn_link::{Client, LinkError, Wire, flashing};
 /// A controller behind a link.
 pub struct RemoteBrain<W> {
     client: Client<W>,
+    number: u16,
 }
 
 impl<W: Wire> RemoteBrain<W> {
@@ -19,12 +20,16 @@ impl<W: Wire> RemoteBrain<W> {
     pub fn start(mut client: Client<W>, blob: &[u8], identity: Identity, number: u16) -> Result<Self, LinkError> {
         flashing::flash(&mut client, blob, identity, false, |_| {})?;
         client.ask(&Reset { robot: number })?;
-        Ok(RemoteBrain { client })
+        Ok(RemoteBrain { client, number })
     }
 }
 
 impl<W: Wire> Brain for RemoteBrain<W> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         self.client.ask(percept).map_err(BrainError::new)
+    }
+
+    fn reboot(&mut self) -> Result<(), BrainError> {
+        self.client.ask(&Reset { robot: self.number }).map_err(BrainError::new)
     }
 }

@@ -14,6 +14,13 @@ pub struct Recovery {
     pub encircled_share: Option<f64>,
 }
 
+impl Recovery {
+    /// How long it took to form again, seconds.
+    pub fn reformed_after_s(&self) -> Option<f64> {
+        self.reformed_at_s.map(|reformed| reformed - self.disturbed_at_s)
+    }
+}
+
 /// Finds the first moment from which something stays as it should for long enough, and counts from there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forming {

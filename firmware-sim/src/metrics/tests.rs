@@ -36,10 +36,18 @@ fn measured(
     meter.metrics()
 }
 
-/// Without walls or stops, around a ring of half a metre.
+/// One robot out of service from this tick on.
+fn away(robot: usize, from: u64) -> Absences {
+    let mut absences = Absences::default();
+    absences.add(robot, from..u64::MAX);
+    absences
+}
+
+/// Without walls or faults, around a ring of half a metre.
 fn options<'a>() -> MetricsOptions<'a> {
     static NO_WALLS: LazyLock<Walls> = LazyLock::new(Walls::default);
-    MetricsOptions { walls: &NO_WALLS, ring_radius_m: 0.5, ticks_per_second: 32, disturbances: &[], stop_ticks: &[] }
+    static PRESENT: LazyLock<Absences> = LazyLock::new(Absences::default);
+    MetricsOptions { walls: &NO_WALLS, ring_radius_m: 0.5, ticks_per_second: 32, disturbances: &[], absences: &PRESENT }
 }
 
 const RING: [f64; 5] = [0.0, 72.0, 144.0, 216.0, 288.0];
@@ -151,8 +159,8 @@ fn robots_are_lost_far_away_and_stray_for_a_while() {
         })
         .collect();
     let distance = |p: Point<f64>, targets: &[Point<f64>]| Some(((p - targets[0]).length() - 0.5).abs());
-    let stop_ticks = [None, None, Some(5)];
-    let metrics = measured(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, distance);
+    let absences = away(2, 5);
+    let metrics = measured(&trace_of(&frames), &MetricsOptions { absences: &absences, ..options() }, distance);
     assert_eq!((metrics.lost_robots, metrics.strayed_robots), (1, 1));
     let metrics = measured(&trace_of(&frames), &options(), distance);
     assert_eq!((metrics.lost_robots, metrics.strayed_robots), (2, 1), "a robot that works counts");
@@ -161,8 +169,8 @@ fn robots_are_lost_far_away_and_stray_for_a_while() {
 #[test]
 fn a_broken_robot_does_not_encircle() {
     let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
-    let stop_ticks = [None, Some(100)];
-    let metrics = measured(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, |_, _| None);
+    let absences = away(1, 100);
+    let metrics = measured(&trace_of(&frames), &MetricsOptions { absences: &absences, ..options() }, |_, _| None);
     assert_eq!((metrics.formed_at_s, metrics.encircled_share), (Some(0.0), Some(0.5)));
 }
 

@@ -13,6 +13,8 @@ pub const LEFT_AFTER_S: f64 = 5.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Whereabouts {
     arrived: bool,
+    /// It has been on the pattern since it is in service.
+    settled: bool,
     left: bool,
     /// Moments since it was last on the pattern.
     off: usize,
@@ -22,12 +24,17 @@ impl Whereabouts {
     /// One moment later; `left_after` is [`LEFT_AFTER_S`] in moments.
     pub fn observe(&mut self, on_pattern: bool, left_after: usize) {
         if on_pattern {
-            self.arrived = true;
+            (self.arrived, self.settled) = (true, true);
             self.off = 0;
         } else {
             self.off += 1;
-            self.left |= self.arrived && self.off >= left_after;
+            self.left |= self.settled && self.off >= left_after;
         }
+    }
+
+    /// It is out of service: when it is back it has to reach the pattern anew.
+    pub fn suspend(&mut self) {
+        (self.settled, self.off) = (false, 0);
     }
 
     /// It is off the pattern at the end: it left it or never reached it.
@@ -48,7 +55,10 @@ mod tests {
     /// (lost, strayed) after these moments, with 3 moments off the pattern for leaving it.
     fn after(moments: &str) -> (bool, bool) {
         let mut robot = Whereabouts::default();
-        moments.chars().for_each(|moment| robot.observe(moment == 'o', 3));
+        moments.chars().for_each(|moment| match moment {
+            'x' => robot.suspend(),
+            moment => robot.observe(moment == 'o', 3),
+        });
         (robot.is_lost(3), robot.has_strayed(3))
     }
 
@@ -60,5 +70,8 @@ mod tests {
         assert_eq!(after("oo---oo--"), (false, true));
         assert_eq!(after("oo---oo---"), (true, false));
         assert_eq!(after("--"), (true, false), "never arrived");
+        assert_eq!(after("ooxx----oo"), (false, false), "on its way back");
+        assert_eq!(after("oo--x--"), (false, false), "not for long enough");
+        assert_eq!(after("ooxx---"), (true, false), "not back");
     }
 }

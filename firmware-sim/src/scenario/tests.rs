@@ -96,7 +96,11 @@ fn every_error_names_place_value_and_remedy() {
         ("name = \"channel\"", "name = 3", "2:8: name = 3: must be a text in quotes"),
         ("snapshots = 15", "snapshot = 15", "4:1: snapshot: unknown key; did you mean snapshots?"),
         ("level = 0.5", "level = 0.5\nnoise = 2", "11:1: morphogen.noise: unknown key (known here: kernel"),
-        ("kernel = \"gaussian\"", "kernel = \"box\"", "7:10: morphogen.kernel = \"box\": unknown variant"),
+        (
+            "kernel = \"gaussian\"",
+            "kernel = \"box\"",
+            "7:10: morphogen.kernel = \"box\": unknown name (known here: gaussian, exponential)",
+        ),
         ("d_max = 2.0", "d_max = ", "14:9: d_max =: a value is missing"),
         ("steepness = 10.0", "", "12:1: ring.steepness: is missing; add it"),
         ("region = [20.0, 20.0]", "region = [20.0, 20.0", "3:10: the list that begins here is not closed"),

@@ -14,6 +14,10 @@ const START_RING: [f64; 2] = [0.3, 1.6];
 const FIRST_STRETCH: f64 = 1e-3;
 /// Free space between bodies and around walls at the start, metres.
 const CLEARANCE: f64 = 0.005;
+/// How far a robot is carried, in multiples of the scenario's `d_max`.
+const CARRIED: [f64; 2] = [0.5, 1.5];
+/// Places that are tried for it.
+const CARRIED_TRIES: u32 = 1000;
 /// Misses in a row after which the ring is made a tenth wider.
 const PATIENCE: u32 = 200;
 
@@ -57,6 +61,21 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
         }
     }
     Some(poses)
+}
+
+/// Where a robot is set down that is carried away: [`CARRIED`] off, without a wall in between, turned anyhow; where it was, if
+/// there is no room.
+pub(super) fn carried(world: &Scenario, poses: &[Pose], from: Pose, stream: &mut Stream) -> Pose {
+    let [least, most] = CARRIED.map(|share| share * world.ring().d_max);
+    for _ in 0..CARRIED_TRIES {
+        let (way, heading) = (turned(stream.unit()), turned(stream.unit()));
+        let distance = least + stream.unit() * (most - least);
+        let position = from.position + way * distance;
+        if free(world, poses, position) && world.walls().ray(from.position, way, distance).is_none() {
+            return Pose { position, heading };
+        }
+    }
+    Pose { heading: turned(stream.unit()), ..from }
 }
 
 /// The unit vector after this share of a whole turn.

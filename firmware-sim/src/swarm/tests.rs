@@ -1,3 +1,5 @@
+mod faults;
+
 use super::*;
 use crate::geometry::length_squared;
 use crate::lab::{self, Laboratory, Wheels};

@@ -1,8 +1,10 @@
 //! One robot in the world: body, senses, clock and brain.
 
+use super::ailments::Ailments;
 use crate::body::{BodyParameters, Drive, Pose};
 use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
+use crate::faults::Fault;
 use crate::geometry::{Walls, length_squared};
 use crate::grid::{Grid, WallIndex};
 use crate::lab::Laboratory;
@@ -42,8 +44,7 @@ pub(super) struct Unit<B> {
     pub letter: Option<Letter>,
     /// Robots so near that bodies can meet in this frame.
     pub near: Vec<u16>,
-    /// The first frame without it, if it breaks down.
-    stops_at: Option<u64>,
+    ailments: Ailments,
     drive: Drive,
     clock: Clock,
     track: Track,
@@ -60,6 +61,7 @@ impl<B: Brain> Unit<B> {
         number: usize,
         brain: B,
         config: &SwarmConfig,
+        faults: Vec<Fault>,
         tracker: &Tracker,
         ether: &Ether,
         samples: usize,
@@ -71,7 +73,7 @@ impl<B: Brain> Unit<B> {
             wheels: [0; 2],
             letter: None,
             near: Vec::with_capacity(16),
-            stops_at: config.stops.iter().filter(|stop| stop.robot == number).map(|stop| stop.tick).min(),
+            ailments: Ailments::new(faults),
             drive: Drive::new(&BodyParameters::drawn(&lab.wheels, seed, number)),
             clock: Clock::new(&lab.timing, seed, number),
             track: tracker.track(seed, number),
@@ -92,11 +94,17 @@ impl<B: Brain> Unit<B> {
         let end = begin + FRAME_US;
         self.letter = None;
         self.find_near(pose, around);
-        if self.stops_at.is_some_and(|stop| around.frame >= stop) {
-            self.wheels = [0; 2];
-            return Ok(());
+        if self.ailments.change_in(around.frame) {
+            if self.ailments.update(around.frame) {
+                self.brain.reboot()?;
+            }
+            self.track.jump(self.ailments.now().jump);
         }
         around.tracker.measure(&mut self.track, begin, pose);
+        if self.ailments.now().off {
+            self.miss(around, end);
+            return Ok(());
+        }
         let slip = self.slip_of_this_frame(around);
         let mut now = begin;
         while self.clock.next_us() < end {
@@ -109,6 +117,16 @@ impl<B: Brain> Unit<B> {
         Ok(())
     }
 
+    /// Passes a frame switched off: what came to it meanwhile is gone when it is on again.
+    fn miss(&mut self, around: &Surroundings<'_>, end_us: u64) {
+        self.wheels = [0; 2];
+        while self.clock.next_us() < end_us {
+            self.clock.tick();
+        }
+        around.tracker.newest(&mut self.track, end_us);
+        around.ether.miss(&mut self.receiver);
+    }
+
     fn find_near(&mut self, pose: &Pose, around: &Surroundings<'_>) {
         self.near.clear();
         let own = self.number as u16;
@@ -119,9 +137,14 @@ impl<B: Brain> Unit<B> {
         });
     }
 
+    /// For each wheel, how far it rolls as a share of what it should.
     fn slip_of_this_frame(&mut self, around: &Surroundings<'_>) -> [f64; 2] {
         let noise = around.lab.wheels.noise;
-        if noise > 0.0 { [(); 2].map(|()| 1.0 + noise * self.slip.normal()) } else { [1.0; 2] }
+        let mut slip = if noise > 0.0 { [(); 2].map(|()| 1.0 + noise * self.slip.normal()) } else { [1.0; 2] };
+        for (slip, stuck) in slip.iter_mut().zip(self.ailments.now().stuck) {
+            *slip = if stuck { 0.0 } else { *slip };
+        }
+        slip
     }
 
     fn drive_on(&self, pose: &mut Pose, time_us: u64, slip: [f64; 2]) {
@@ -137,7 +160,9 @@ impl<B: Brain> Unit<B> {
         let percept = self.percept(pose, around, now_us);
         let command = self.brain.tick(&percept)?;
         self.wheels = [command.left, command.right].map(|speed| speed.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
-        if let Some(message) = &command.broadcast {
+        if let Some(message) = &command.broadcast
+            && !self.ailments.now().without_radio
+        {
             self.letter = Some(Letter::of(message, now_us));
         }
         Ok(())
@@ -152,7 +177,12 @@ impl<B: Brain> Unit<B> {
             proximity: self.proximity(pose, around),
             targets,
             obstacles,
-            heard: around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction),
+            heard: if self.ailments.now().without_radio {
+                around.ether.miss(&mut self.receiver);
+                heapless::Vec::new()
+            } else {
+                around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction)
+            },
         }
     }
 
@@ -180,6 +210,6 @@ impl<B: Brain> Unit<B> {
                 around.ring.sense_body(pose, target, target_radius, &mut free);
             }
         }
-        around.ring.readings(&free, &self.gains, &mut self.noise)
+        self.ailments.now().readings(around.ring.readings(&free, &self.gains, &mut self.noise))
     }
 }

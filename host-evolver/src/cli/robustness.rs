@@ -98,6 +98,10 @@ impl Experiment<'_> {
         let whole = |value: f64| format!("{value:.0}");
         let mut text = format!("{:<28}{:>12}{:>12}{:>12}\n", "", "median", "19 of 20", "worst");
         text += &row("not encircled after forming", &|reality| 1.0 - reality.encircled_share, &percent);
+        if robustness.realities.iter().any(|reality| reality.reformed_encircled_share.is_some()) {
+            let left_open = |reality: &Reality| 1.0 - reality.reformed_encircled_share.unwrap_or(1.0);
+            text += &row("not encircled once re-formed", &left_open, &percent);
+        }
         text += &row("radial error / ring", &error, &percent);
         text += &row("robots lost", &|reality| reality.lost_robots as f64, &whole);
         text += &row("robots strayed", &|reality| reality.strayed_robots as f64, &whole);

@@ -5,6 +5,7 @@ use super::robustness;
 use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation, EmulationError};
+use crate::faults;
 use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::realities;
@@ -322,6 +323,7 @@ fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Val
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,
+        "faults": faults::happened(simulation),
         "verdict": simulation.verdict(),
         "works": simulation.verdict().works(),
     })
@@ -334,7 +336,7 @@ pub fn table(simulation: &Simulation) -> String {
     let percent = |share: Option<f64>| share.map_or("never formed".into(), |share| format!("{:.1} %", share * 100.0));
     let seconds = |time: Option<f64>| time.map_or("never".into(), |time| format!("{time:.1} s"));
     let mark = |good: bool| if good { "yes" } else { "NO" };
-    let rows = [
+    let mut rows = vec![
         (
             "encircled after forming",
             percent(metrics.encircled_share),
@@ -366,12 +368,18 @@ pub fn table(simulation: &Simulation) -> String {
             mark(verdict.clear_of_peers),
         ),
         ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
-        ("works", String::new(), String::new(), mark(verdict.works())),
     ];
+    if let Some(last) = metrics.recoveries.last() {
+        let never = if last.reformed_at_s.is_none() { "never".into() } else { percent(last.encircled_share) };
+        rows.push(("re-formed after last fault", seconds(last.reformed_after_s()), String::new(), ""));
+        rows.push(("encircled once re-formed", never, String::new(), ""));
+    }
+    rows.push(("works", String::new(), String::new(), mark(verdict.works())));
     let mut text = format!("{:<28}{:>14}   {:<14}{}\n", "", "measured", "wanted", "met");
     for (name, measured, wanted, met) in rows {
         text += format!("{name:<28}{measured:>14}   {wanted:<14}{met}").trim_end();
         text += "\n";
     }
+    text += &faults::list(&faults::happened(simulation));
     text.trim_end().to_owned()
 }

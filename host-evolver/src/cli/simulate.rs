@@ -318,7 +318,7 @@ fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Val
         "robots": simulation.config.lab.robots.count,
         "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "conditions": simulation.config,
+        "swarm": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

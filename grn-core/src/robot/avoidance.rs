@@ -69,7 +69,8 @@ impl<S: Scalar> Avoidance<S> {
         Avoidance { strength: cruise, side: Side::Left, kept: 0 }
     }
 
-    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`.
+    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`, `ticks` of 1/32 s after
+    /// the last time.
     pub fn velocity(
         &mut self,
         wanted: Vector<S>,
@@ -77,11 +78,12 @@ impl<S: Scalar> Avoidance<S> {
         heading: Vector<S>,
         here: Point<S>,
         knowledge: &Knowledge<S>,
+        ticks: u32,
     ) -> Vector<S> {
         let push = self.push(proximity, heading);
         let against = push.dot(wanted);
         if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
-            self.kept = self.kept.saturating_sub(1);
+            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
             return wanted + push;
         }
         self.around(wanted, push, against)
@@ -150,7 +152,7 @@ mod tests {
     fn velocity(avoidance: &mut Avoidance<f32>, wanted: Vector<f32>, [left, right]: [u16; 2]) -> Vector<f32> {
         let mut proximity = FREE;
         (proximity[7], proximity[0]) = (left, right);
-        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new())
+        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new(), 1)
     }
 
     #[test]

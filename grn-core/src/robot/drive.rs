@@ -32,8 +32,9 @@ impl<S: Scalar> Drive<S> {
         Drive { turn: turn * S::from_f64(AXLE / 2.0), backwards: false }
     }
 
-    /// (left, right) wheel speeds in steps per second for a velocity in metres per second.
-    pub fn wheels(&mut self, velocity: Vector<S>, heading: Vector<S>) -> (i16, i16) {
+    /// (left, right) wheel speeds in steps per second for a velocity in metres per second, turning no faster than
+    /// `stiffest` per unit of sideways error, 1/s.
+    pub fn wheels(&mut self, velocity: Vector<S>, heading: Vector<S>, stiffest: S) -> (i16, i16) {
         let speed = velocity.length();
         let along = velocity.dot(heading);
         let aside = heading.cross(velocity);
@@ -46,7 +47,8 @@ impl<S: Scalar> Drive<S> {
         let aside = if self.backwards { -aside } else { aside };
         let along = if self.backwards { along.min(S::ZERO) } else { along.max(S::ZERO) };
         let slow = S::from_ratio(SLOW.0, SLOW.1);
-        let difference = self.turn * (aside / speed.max(slow));
+        let turn = self.turn.min(stiffest * S::from_f64(AXLE / 2.0));
+        let difference = turn * (aside / speed.max(slow));
         wheel_steps(along - difference, along + difference)
     }
 }
@@ -72,14 +74,25 @@ mod tests {
     fn wheels_follow_the_velocity() {
         let east = Vector::new(1.0_f32, 0.0);
         let mut drive = Drive::new(4.0);
-        let (left, right) = drive.wheels(east * 0.1, east);
+        let (left, right) = drive.wheels(east * 0.1, east, 16.0);
         assert_eq!((left, right), (776, 776));
-        let (left, right) = drive.wheels(east * -0.1, east);
+        let (left, right) = drive.wheels(east * -0.1, east, 16.0);
         assert_eq!((left, right), (-776, -776));
-        let (left, right) = Drive::new(4.0).wheels(Vector::new(0.05, 0.05), east);
+        let (left, right) = Drive::new(4.0).wheels(Vector::new(0.05, 0.05), east, 16.0);
         assert!(right > left && left + right > 0, "turns left while driving on: {left} {right}");
-        let (left, right) = Drive::new(4.0).wheels(east * 9.0, east);
+        let (left, right) = Drive::new(4.0).wheels(east * 9.0, east, 16.0);
         assert_eq!((left, right), (1100, 1100));
-        assert_eq!(Drive::new(4.0_f32).wheels(Vector::ZERO, east), (0, 0));
+        assert_eq!(Drive::new(4.0_f32).wheels(Vector::ZERO, east, 16.0), (0, 0));
+    }
+
+    #[test]
+    fn slow_control_turns_no_faster_than_it_can_stop() {
+        let (east, north) = (Vector::new(1.0_f32, 0.0), Vector::new(0.0, 0.05));
+        let turning = |stiffest: f32| {
+            let (left, right) = Drive::new(5.0).wheels(north, east, stiffest);
+            right - left
+        };
+        assert_eq!(turning(16.0), turning(5.0));
+        assert!((turning(16.0) - 2 * turning(2.5)).abs() <= 2, "{} {}", turning(16.0), turning(2.5));
     }
 }

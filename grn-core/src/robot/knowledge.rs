@@ -112,8 +112,11 @@ impl<S: Scalar> Knowledge<S> {
             if let Some(report) = &message.target {
                 self.hear_of_target(report, age_ms);
             }
-            let since = if age_ms == 0 { Vector::ZERO } else { velocity * seconds(age_ms) };
-            self.neighbours.meet(message.sender, message.position, since, here, now);
+            let mut carried = self.neighbours.carried();
+            if age_ms > 0 {
+                carried = carried - velocity * seconds(age_ms);
+            }
+            self.neighbours.meet(message.sender, message.position, carried, here, now);
         }
         let turn = whose_turn(now, percept.heard.len() - own_messages);
         let chosen = match own_messages {

@@ -64,6 +64,11 @@ impl<S: Scalar> Neighbours<S> {
         self.carried = self.carried + moved;
     }
 
+    /// How far the swarm has come since neighbours were last forgotten, metres.
+    pub fn carried(&self) -> Vector<S> {
+        self.carried
+    }
+
     /// Where a robot at `here` is among the [known](Self::known), which stay where they were heard.
     pub fn seen_from(&self, here: Point<S>) -> Point<S> {
         here - self.carried
@@ -73,8 +78,9 @@ impl<S: Scalar> Neighbours<S> {
         &self.known
     }
 
-    /// Hears in tick `now`, itself at `here`, that `robot` was at `place` and that the swarm moved by `since` metres meanwhile.
-    pub fn meet(&mut self, robot: u16, place: Millimetres, since: Vector<S>, here: Millimetres, now: u32) {
+    /// Hears in tick `now`, itself at `here`, that `robot` was at `place` when the swarm had come as far as `carried`, as
+    /// [`carried`](Self::carried) has it now.
+    pub fn meet(&mut self, robot: u16, place: Millimetres, carried: Vector<S>, here: Millimetres, now: u32) {
         let square = squared_distance(place, here);
         let index = match self.index_of(robot) {
             Some(index) => index,
@@ -82,7 +88,7 @@ impl<S: Scalar> Neighbours<S> {
             None if square < self.largest => self.farthest,
             None => return,
         };
-        let met = Neighbour { robot, place: metres(place) + since - self.carried, square, heard: now };
+        let met = Neighbour { robot, place: metres(place) - carried, square, heard: now };
         match self.known.get_mut(index) {
             Some(known) => *known = met,
             // There is room: in a full list the index above is that of a known neighbour.
@@ -195,7 +201,8 @@ mod tests {
         let offset = |neighbours: &Neighbours<f32>| neighbours.known()[0].offset(neighbours.seen_from(here)).x;
         neighbours.carry(Vector::new(3.0, 0.0));
         // It was at 100 mm, and the swarm has moved by 10 mm since.
-        neighbours.meet(1, Millimetres { x: 100, y: 0 }, Vector::new(0.01, 0.0), HERE, 1);
+        let then = neighbours.carried() - Vector::new(0.01, 0.0);
+        neighbours.meet(1, Millimetres { x: 100, y: 0 }, then, HERE, 1);
         assert!((offset(&neighbours) + 0.11).abs() < 1e-6);
         for tick in 2..30 {
             neighbours.carry(Vector::new(0.001, 0.0));

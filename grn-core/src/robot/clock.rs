@@ -17,8 +17,16 @@ pub struct Pace<S> {
     pub seconds: S,
     /// Ticks of 1/32 s that have ended since, at most 8.
     pub ticks: u32,
-    /// The largest gain, 1/s, with which a controlled quantity comes to rest at this pace: half of its error in one step.
-    pub stiffest: S,
+    /// The largest gain, 1/s, with which a controlled quantity surely comes to rest: half of its error in one step. None is
+    /// needed at the nominal pace, which gains are made for.
+    stiffest: Option<S>,
+}
+
+impl<S: Scalar> Pace<S> {
+    /// A gain, 1/s, held to what this pace allows.
+    pub fn held(&self, gain: S) -> S {
+        self.stiffest.map_or(gain, |stiffest| gain.min(stiffest))
+    }
 }
 
 impl Clock {
@@ -34,11 +42,7 @@ impl Clock {
         self.rest_us -= ticks * NOMINAL_TICK_US;
         self.tick = self.tick.wrapping_add(ticks);
         let seconds = S::from_millionths(elapsed_us as i32);
-        let stiffest = if elapsed_us <= NOMINAL_TICK_US {
-            S::from_ratio(16, 1)
-        } else {
-            S::ONE.over_power_of_two(1) / seconds
-        };
+        let stiffest = (elapsed_us > NOMINAL_TICK_US).then(|| S::ONE.over_power_of_two(1) / seconds);
         Pace { seconds, ticks, stiffest }
     }
 }
@@ -54,14 +58,14 @@ mod tests {
 
     #[test]
     fn ticks_are_counted_however_often_time_is_told() {
-        for (elapsed_us, stiffest) in [(1_000, 16.0), (31_250, 16.0), (32_000, 15.625), (100_000, 5.0), (250_000, 2.0)] {
+        for (elapsed_us, held) in [(1_000, 60.0), (31_250, 60.0), (32_000, 15.625), (100_000, 5.0), (250_000, 2.0)] {
             let mut clock = Clock::default();
             let mut ticks = 0;
             for step in 1..=1000_u64 {
                 let pace = clock.advance::<f64>(elapsed_us);
                 ticks += u64::from(pace.ticks);
                 assert_eq!(ticks, step * u64::from(elapsed_us) * 32 / 1_000_000);
-                assert!(pace.ticks <= 8 && (pace.stiffest - stiffest).abs() < 1e-12);
+                assert!(pace.ticks <= 8 && (pace.held(60.0) - held).abs() < 1e-12 && pace.held(1.0) == 1.0);
             }
             assert_eq!(u64::from(clock.tick()), ticks);
         }

@@ -150,7 +150,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let wanted = self.wanted_velocity(here, percept, &pace);
         let velocity =
             self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
-        let (left, right) = self.drive.wheels(velocity, heading, pace.stiffest);
+        let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
         Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })
     }

@@ -152,7 +152,7 @@ impl<S: Scalar> Knowledge<S> {
     /// It is older by the time it was on its way, and by one tick at least: else robots would tell each other for ever
     /// what nobody sees any more.
     fn hear_of_target(&mut self, report: &TargetReport, age_ms: u16) {
-        let on_its_way = ticks_of(age_ms).clamp(1, u32::from(u8::MAX)) as u8;
+        let on_its_way = if age_ms == 0 { 1 } else { ticks_of(age_ms).clamp(1, u32::from(u8::MAX)) as u8 };
         let age = report.age.saturating_add(on_its_way);
         let known = self.targets.iter_mut().find(|known| known.target == report.target);
         if age > FORGET_TARGET_TICKS || known.as_ref().is_some_and(|known| age >= known.age) {

@@ -114,7 +114,7 @@ impl<S: Scalar> Motion<S> {
         } else {
             self.protein + (production - self.protein * self.decay) * pace.seconds
         };
-        let velocity = target.velocity + to_pattern * self.attraction.min(pace.stiffest) + self.protein * self.coupling;
+        let velocity = target.velocity + to_pattern * pace.held(self.attraction) + self.protein * self.coupling;
         velocity.limited(self.cruise)
     }
 

@@ -18,6 +18,9 @@ const FORGET_TICKS: u32 = TICKS_PER_SECOND as u32;
 /// both since it was heard.
 const CLOSE: u32 = 130 * 130;
 
+/// No square: nobody is that far away.
+const NOT_MEASURED: u32 = u32::MAX;
+
 /// Another robot nearby.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbour<S> {
@@ -48,6 +51,7 @@ pub struct Neighbours<S> {
     known: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
     /// By the low byte of a robot's number: which of the known to compare with first.
     places: [u8; 1 << u8::BITS],
+    /// Which of the known is the farthest, and its square; [`NOT_MEASURED`] if that must be found again.
     farthest: usize,
     largest: u32,
     /// How far the swarm has come with its target since neighbours were last forgotten, metres.
@@ -56,7 +60,7 @@ pub struct Neighbours<S> {
 
 impl<S: Scalar> Neighbours<S> {
     pub fn new() -> Self {
-        Neighbours { known: Vec::new(), places: [0; 1 << u8::BITS], farthest: 0, largest: 0, carried: Vector::ZERO }
+        Neighbours { known: Vec::new(), places: [0; 1 << u8::BITS], farthest: 0, largest: NOT_MEASURED, carried: Vector::ZERO }
     }
 
     /// The swarm moves by so many metres, and the neighbours with it.
@@ -85,8 +89,15 @@ impl<S: Scalar> Neighbours<S> {
         let index = match self.index_of(robot) {
             Some(index) => index,
             None if !self.known.is_full() => self.known.len(),
-            None if square < self.largest => self.farthest,
-            None => return,
+            None => {
+                if self.largest == NOT_MEASURED {
+                    self.measure();
+                }
+                if square >= self.largest {
+                    return;
+                }
+                self.farthest
+            }
         };
         let met = Neighbour { robot, place: metres(place) - carried, square, heard: now };
         match self.known.get_mut(index) {
@@ -95,10 +106,11 @@ impl<S: Scalar> Neighbours<S> {
             None => drop(self.known.push(met)),
         }
         self.note(robot, index);
-        if square > self.largest {
+        // Only a full list is asked for its farthest, and seldom.
+        if index == self.farthest {
+            self.largest = NOT_MEASURED;
+        } else if square > self.largest {
             (self.farthest, self.largest) = (index, square);
-        } else if index == self.farthest {
-            self.measure();
         }
     }
 
@@ -119,7 +131,7 @@ impl<S: Scalar> Neighbours<S> {
                 self.note(robot, index);
             }
         }
-        self.measure();
+        self.largest = NOT_MEASURED;
     }
 
     fn index_of(&self, robot: u16) -> Option<usize> {
@@ -225,6 +237,7 @@ mod tests {
         assert_eq!(robots(&neighbours), [2]);
         meet(&mut neighbours, 3, 100, 43);
         meet(&mut neighbours, 2, 200, 43);
+        neighbours.measure();
         assert_eq!((robots(&neighbours), neighbours.largest), (std::vec![2, 3], 200 * 200));
     }
 }

@@ -119,8 +119,14 @@ impl<S: Scalar> Avoidance<S> {
     /// A sensor with free distance r in front of it, r below R = `range`, 0.1 mm, pushes with (1 - r/R)².
     fn push(&self, proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>, range: i32) -> Vector<S> {
         let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < range);
+        // Not divided by the range in a variable: integers of 64 bits would be divided.
+        let per_range = if range == PUSH_RANGE {
+            S::from_ratio(10_000, PUSH_RANGE)
+        } else {
+            S::from_ratio(10_000, LONELY_PUSH_RANGE)
+        };
         felt.fold(Vector::ZERO, |sum, (&distance, (cos, sin))| {
-            let closeness = S::from_ratio(range - i32::from(distance), range);
+            let closeness = S::from_millionths((range - i32::from(distance)) * 100) * per_range;
             let direction = heading * unit::<S>(cos) + heading.turned_left() * unit::<S>(sin);
             sum - direction * (self.strength * closeness * closeness)
         })
@@ -147,7 +153,11 @@ mod tests {
     fn the_push_points_away() {
         let avoidance = Avoidance::new(0.1);
         assert_eq!(avoidance.push(&FREE, NORTH, PUSH_RANGE), Vector::ZERO);
-        let push = avoidance.push(&[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX], NORTH, PUSH_RANGE);
+        let push = avoidance.push(
+            &[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
+            NORTH,
+            PUSH_RANGE,
+        );
         assert!((push.x + 0.1).abs() < 1e-4 && push.y.abs() < 1e-6, "right sensor of a northbound robot: {push:?}");
     }
 

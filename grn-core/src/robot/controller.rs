@@ -148,8 +148,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         };
         self.knowledge.update(percept, here, self.robot, now, self.swarm_velocity);
         let wanted = self.wanted_velocity(here, percept, &pace);
-        let velocity =
-            self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
+        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
         let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
         Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })
@@ -217,3 +216,6 @@ fn steps_per_tick(time_scale: f32, step: Step) -> Result<u8, LoadError> {
         Err(LoadError::StepsPerTick(steps))
     }
 }
+
+#[cfg(test)]
+mod tests;

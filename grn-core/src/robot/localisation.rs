@@ -146,10 +146,8 @@ impl<S: Scalar> Localisation<S> {
             turned = turned + leg.turned;
             age_us -= leg.elapsed_us;
         }
-        let carried = || Pose {
-            position: measured.position + moved,
-            heading: Rotation::by(turned).of(measured.heading),
-        };
+        let carried =
+            || Pose { position: measured.position + moved, heading: Rotation::by(turned).of(measured.heading) };
         (age_us == 0).then(carried)
     }
 

@@ -60,7 +60,13 @@ pub struct Neighbours<S> {
 
 impl<S: Scalar> Neighbours<S> {
     pub fn new() -> Self {
-        Neighbours { known: Vec::new(), places: [0; 1 << u8::BITS], farthest: 0, largest: NOT_MEASURED, carried: Vector::ZERO }
+        Neighbours {
+            known: Vec::new(),
+            places: [0; 1 << u8::BITS],
+            farthest: 0,
+            largest: NOT_MEASURED,
+            carried: Vector::ZERO,
+        }
     }
 
     /// The swarm moves by so many metres, and the neighbours with it.

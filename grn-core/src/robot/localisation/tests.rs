@@ -58,7 +58,11 @@ fn between_fixes_the_pose_is_that_of_the_arcs<S: Scalar>() {
             truth = truth.after(wheels, f64::from(elapsed_us) * 1e-6);
             let (distance, angle) = errors(tick(&mut localisation, None, elapsed_us).unwrap(), truth);
             let bound = if elapsed_us > 50_000 { 6e-4 } else { 5e-5 };
-            assert!(distance < bound && angle < 2.0 * bound + 2e-4, "{} {elapsed_us} µs, {step}: {distance} {angle}", S::NAME);
+            assert!(
+                distance < bound && angle < 2.0 * bound + 2e-4,
+                "{} {elapsed_us} µs, {step}: {distance} {angle}",
+                S::NAME
+            );
         }
     }
 }
@@ -109,7 +113,10 @@ fn old_and_rare_fixes_are_carried_forward() {
             {
                 // Within a tick, the way of a fix is taken from the tick's chord.
                 let bound = if elapsed_us > 50_000 { 4e-3 } else { 6e-4 };
-                assert!(distance < bound && angle < 4e-3, "{age_ms} ms, 1 of {every}, {elapsed_us} µs: {distance} {angle}");
+                assert!(
+                    distance < bound && angle < 4e-3,
+                    "{age_ms} ms, 1 of {every}, {elapsed_us} µs: {distance} {angle}"
+                );
             }
         }
     }

@@ -24,8 +24,10 @@ const FAR_UM: i32 = 150_000;
 const DOUBT_US: u32 = 333_000;
 /// After this time without a fix that counts the pose is not known.
 const STALE_US: u32 = 500_000;
-/// How many stretches of the way are kept, to carry fixes forward: 0.75 s and more.
-const LEGS: usize = 24;
+/// A stretch of the way is at least this long: one and a half ticks of 1/32 s.
+const LEG_US: u32 = NOMINAL_TICK_US * 3 / 2;
+/// How many of them are kept, to carry fixes forward: 0.6 s at least.
+const LEGS: usize = 13;
 
 /// Where the robot is and where it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +38,7 @@ pub struct Pose<S> {
     pub heading: Vector<S>,
 }
 
-/// A stretch of the way: what the wheels did in at least a good half of 1/32 s.
+/// A stretch of the way: what the wheels did in at least [`LEG_US`].
 #[derive(Clone, Copy, Debug)]
 struct Leg<S> {
     moved: Vector<S>,
@@ -46,7 +48,7 @@ struct Leg<S> {
 }
 
 impl<S: Scalar> Leg<S> {
-    const REST: Self = Leg { moved: Vector::ZERO, turned: S::ZERO, elapsed_us: NOMINAL_TICK_US };
+    const REST: Self = Leg { moved: Vector::ZERO, turned: S::ZERO, elapsed_us: LEG_US };
 }
 
 /// The state of localisation.
@@ -108,10 +110,10 @@ impl<S: Scalar> Localisation<S> {
         self.remember(Leg { moved, turned, elapsed_us });
     }
 
-    /// Short ticks share a stretch, so that the ring does not get too short.
+    /// Short ticks share a stretch, so that few of them reach far back.
     fn remember(&mut self, leg: Leg<S>) {
         if let Some(newest) = self.legs.get_mut(self.newest)
-            && newest.elapsed_us < NOMINAL_TICK_US / 2
+            && newest.elapsed_us < LEG_US
         {
             newest.moved = newest.moved + leg.moved;
             newest.turned = newest.turned + leg.turned;

@@ -104,8 +104,11 @@ impl<S: Scalar> Motion<S> {
             .unwrap_or_else(|| self.way_to_target(to_target));
         let to_pattern = direction * distance;
         let repulsion = self.repulsion_from(neighbours.seen_from(here), direction.turned_left(), neighbours.known());
-        let saturation = S::ONE + distance.abs() * self.per_ring_radius;
-        let production = to_pattern * (self.drive / saturation) + repulsion * self.repulsion;
+        let mut production = repulsion * self.repulsion;
+        if self.drive != S::ZERO {
+            let saturation = S::ONE + distance.abs() * self.per_ring_radius;
+            production = production + to_pattern * (self.drive / saturation);
+        }
         let decayed = self.decay * pace.seconds;
         self.protein = if decayed > S::ONE.over_power_of_two(1) {
             // An explicit step would overshoot at this pace.

@@ -51,6 +51,8 @@ pub struct Neighbours<S> {
     known: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
     /// By the low byte of a robot's number: which of the known to compare with first.
     places: [u8; 1 << u8::BITS],
+    /// Whether a robot was met whose number is more than a byte, so that others may end in the same byte.
+    crowded: bool,
     /// Which of the known is the farthest, and its square; [`NOT_MEASURED`] if that must be found again.
     farthest: usize,
     largest: u32,
@@ -63,6 +65,7 @@ impl<S: Scalar> Neighbours<S> {
         Neighbours {
             known: Vec::new(),
             places: [0; 1 << u8::BITS],
+            crowded: false,
             farthest: 0,
             largest: NOT_MEASURED,
             carried: Vector::ZERO,
@@ -140,13 +143,14 @@ impl<S: Scalar> Neighbours<S> {
         self.largest = NOT_MEASURED;
     }
 
-    fn index_of(&self, robot: u16) -> Option<usize> {
+    fn index_of(&mut self, robot: u16) -> Option<usize> {
         let is_it = |known: &Neighbour<S>| known.robot == robot;
         let index = self.places.get(usize::from(robot as u8)).copied().map(usize::from)?;
         if self.known.get(index).is_some_and(is_it) {
             return Some(index);
         }
-        self.known.iter().position(is_it)
+        self.crowded |= robot > u16::from(u8::MAX);
+        if self.crowded { self.known.iter().position(is_it) } else { None }
     }
 
     fn note(&mut self, robot: u16, index: usize) {

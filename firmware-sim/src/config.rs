@@ -6,8 +6,8 @@ use core::fmt;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// The most robots in a swarm: senders are numbered in a byte.
-pub const MAX_ROBOTS: usize = 250;
+/// The most robots in a swarm.
+pub const MAX_ROBOTS: usize = 10_000;
 
 /// A run: swarm, scale, timing, radio and noise. Metres are real ones, in which a robot is 7 cm across, unless stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -160,7 +160,7 @@ mod tests {
         let radio = |range_m, loss| SwarmConfig { radio: RadioConfig { range_m, loss }, ..good.clone() };
         let cases = [
             (SwarmConfig { robots: 0, ..good.clone() }, "robots", "0"),
-            (SwarmConfig { robots: 251, ..good.clone() }, "robots", "251"),
+            (SwarmConfig { robots: 10_001, ..good.clone() }, "robots", "10001"),
             (SwarmConfig { mothers: 0, ..good.clone() }, "mothers", "0"),
             (SwarmConfig { mothers: 21, ..good.clone() }, "mothers", "21"),
             (SwarmConfig { scale: f64::NAN, ..good.clone() }, "scale", "NaN"),

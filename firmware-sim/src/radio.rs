@@ -84,9 +84,9 @@ impl Letter {
 }
 
 /// A sender as a number that sorts by distance and then by number: the squared distance's bits (nonnegative floats sort
-/// like their bits), of which the last eight give way to the sender's number, at most 255.
+/// like their bits), of which the last sixteen give way to the sender's number.
 fn rank(sender: u16, squared: f64) -> u64 {
-    (squared.to_bits() & !0xff) | u64::from(sender & 0xff)
+    (squared.to_bits() & !0xffff) | u64::from(sender)
 }
 
 /// Ranks after every sender.
@@ -145,7 +145,7 @@ impl Radio {
         });
         for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
             // As many as fit were chosen.
-            let message = self.sent.letters[(rank & 0xff) as usize].message();
+            let message = self.sent.letters[(rank & 0xffff) as usize].message();
             let _ = heard.push(Heard { message, age_ms: 0 });
         }
         heard

@@ -2,10 +2,10 @@
 
 use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
-use firmware_sim::config::{ConfigError, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
-use firmware_sim::swarm::{Outcome, Progress, Swarm};
+use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
 use firmware_sim::trace::Observer;
 use grn_core::blob::{Blob, Identity};
 use grn_core::field::Kernel;
@@ -14,7 +14,9 @@ use grn_core::pattern::NoPattern;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
+use grn_input::InputError;
 use serde::Serialize;
+use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -36,11 +38,9 @@ pub enum SimulationError {
     /// The blob's pattern vanishes in double precision.
     NoPattern(NoPattern),
     /// The swarm cannot be set up.
-    Config(ConfigError),
+    Config(InputError),
     /// A robot's brain failed.
-    Brain(String),
-    /// An emulated robot could not be started.
-    Emulator(String),
+    Brain(StepError),
 }
 
 impl fmt::Display for SimulationError {
@@ -49,12 +49,22 @@ impl fmt::Display for SimulationError {
             SimulationError::Load(error) => error.fmt(f),
             SimulationError::NoPattern(error) => error.fmt(f),
             SimulationError::Config(error) => error.fmt(f),
-            SimulationError::Brain(error) | SimulationError::Emulator(error) => f.write_str(error),
+            SimulationError::Brain(error) => error.fmt(f),
         }
     }
 }
 
-impl std::error::Error for SimulationError {}
+impl Error for SimulationError {
+    /// It shows the words of the error in it, so the next in the chain is what that one comes from.
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            SimulationError::Load(error) => error.source(),
+            SimulationError::NoPattern(error) => error.source(),
+            SimulationError::Config(error) => error.source(),
+            SimulationError::Brain(error) => error.source(),
+        }
+    }
+}
 
 /// A finished run.
 pub struct Simulation {
@@ -105,7 +115,7 @@ impl Simulation {
 
     /// The most contacts between robots that a working swarm of this size has.
     pub fn allowed_peer_contacts(&self) -> u64 {
-        (ENOUGH_PEER_CONTACTS * self.config.robots as f64) as u64
+        (ENOUGH_PEER_CONTACTS * self.config.lab.robots.count as f64) as u64
     }
 
     /// Whether the controller works.
@@ -174,7 +184,7 @@ pub(crate) fn run<B: Brain>(
     let mut meter = Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
     let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
     let outcome = swarm.run(end, &mut (&mut meter, observer), |progress| watch(share(progress)));
-    match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
+    match outcome.map_err(SimulationError::Brain)? {
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }
@@ -188,8 +198,8 @@ const MOST_HOURS: f64 = 1000.0;
 /// Whether a run ends in reasonable time: a slow target makes a long run.
 ///
 /// # Errors
-/// [`ConfigError`] that says which speed is possible.
-pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
+/// [`InputError`] that says which speed is possible.
+pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
     let most_seconds = MOST_HOURS * 3600.0;
     let path = scenario.longest_path() * config.scale;
     if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
@@ -197,13 +207,10 @@ pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), Con
     }
     // Rounded up, so that the speed that is named is possible.
     let least = (path / (most_seconds - config.settle_s) * 1e9).ceil() / 1e9;
-    Err(ConfigError {
-        field: "target_speed_m_per_s",
-        value: format!("{:?}", config.target_speed_m_per_s),
-        expected: format!(
-            "the run would take longer than {MOST_HOURS:.0} simulated hours; at least {least} metres per second are needed"
-        ),
-    })
+    let way_out = format!(
+        "the run would take longer than {MOST_HOURS:.0} simulated hours; at least {least} metres per second are needed"
+    );
+    Err(InputError::new("target_speed_m_per_s", format!("{:?}", config.target_speed_m_per_s), way_out))
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.

@@ -1,6 +1,6 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
+use super::{Answer, Failure, interrupt, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
 use grn_input::file_name;
 use indicatif::ProgressBar;
@@ -20,10 +20,10 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
-    #[arg(long, value_parser = options::threads)]
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
-    #[arg(long, value_name = "I/N")]
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<Shard>,
     /// Take over the runs of this folder first; may be given several times.
     #[arg(long, value_name = "DIR")]
@@ -41,10 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.map_or(0, NonZeroUsize::get))
-        .build()
-        .map_err(no_threads)?;
+    let pool = options::pool(arguments.threads)?;
     let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);

@@ -1,7 +1,8 @@
 //! `grn evolve`.
 
-use super::simulate::{self, DEFAULT_ROBOTS, check_swarm, table, usual_config, watched};
-use super::{Answer, Failure, about, interrupt, no_threads, options, output, progress, this_command};
+use super::conditions::Conditions;
+use super::simulate::{self, check_swarm, table, usual_config, watched};
+use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
 use crate::files::FileError;
@@ -25,13 +26,13 @@ pub struct Arguments {
     /// The world to evolve for.
     scenario: PathBuf,
     /// Seed of everything random; equal seeds give equal fronts.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Threads to work with, up to 8 a core; the result does not depend on it [default: all cores].
-    #[arg(long, value_parser = options::threads)]
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Budget: evaluations of f2; with --resume it may be larger than before.
-    #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations)]
+    #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations, allow_hyphen_values = true)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
     #[arg(long, default_value = "all")]
@@ -40,8 +41,10 @@ pub struct Arguments {
     #[arg(long, default_value_t = Objectives::paper(), value_name = "NAMES")]
     objectives: Objectives,
     /// World metres per scenario metre of the blobs.
-    #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale)]
+    #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale, allow_hyphen_values = true)]
     scale: f32,
+    #[command(flatten)]
+    conditions: Conditions,
     /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -68,9 +71,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         objectives: arguments.objectives.clone(),
         ..Settings::default()
     };
-    let config = usual_config(arguments.scale, DEFAULT_ROBOTS);
+    let config = usual_config(arguments.scale, arguments.conditions.laboratory()?);
     check_swarm(&arguments.scenario, &scenario, &config)?;
-    let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale);
+    let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale, config.lab.clone());
     let stop = interrupt::watch()?;
     // Settings are checked before anything is written.
     let world = World::new(scenario.clone());
@@ -82,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         (RunFolder::create(&folder, &this_command(), manifest, &scenario)?, None)
     };
     run.notices().iter().for_each(output::notice);
-    let mut search = Search::new(&world, settings.clone(), state)?;
+    let mut search = Search::new(&world, settings.clone(), state).map_err(|error| Failure::from(error).of_program())?;
     search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
     let front = search.front();
     let is_feasible = front.iter().all(|member| member.is_feasible());
@@ -96,15 +99,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         output::report(infeasible(&world, &front));
         return Ok(Answer::No);
     }
-    let robots = config.robots;
+    let (robots, lab) = (config.lab.robots.count, config.lab.name.clone());
     let mut recorder = simulate::recorder(&scenario, &config);
     let knee_path = run.path("knee.grn");
-    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop)?;
-    for (name, content) in simulate::files(&simulation, recorder.trace(), &scenario, &knee)? {
+    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop);
+    // World, swarm and models were checked before the search.
+    let simulation = simulation.map_err(Failure::of_program)?;
+    for (name, content) in simulate::files(&simulation, recorder.trace(), &scenario, &knee) {
         contents.insert(format!("simulation/{name}"), content);
     }
     run.finish(&contents)?;
-    output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
+    output::report(format!("the knee on {robots} simulated robots in the laboratory {lab} (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
@@ -178,10 +183,7 @@ fn search_on(
     stop: &AtomicBool,
     folder: &Path,
 ) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, NonZeroUsize::get))
-        .build()
-        .map_err(no_threads)?;
+    let pool = options::pool(threads)?;
     let found = progress::Found::default();
     found.add(search.state().evaluations as u64);
     let bar = ProgressBar::new(search.settings().evaluations as u64)

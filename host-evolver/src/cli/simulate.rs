@@ -1,12 +1,16 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
+use super::conditions::Conditions;
+use super::robustness;
+use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
-use crate::emulation::{self, Emulation};
+use crate::emulation::{self, Emulation, EmulationError};
 use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
+use crate::realities;
 use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
-use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
+use firmware_sim::lab::{Laboratory, MAX_ROBOTS};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
 use firmware_sim::trace::{Observer, Recorder, Trace, TraceHeader};
@@ -16,12 +20,11 @@ use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
 use serde_json::json;
 use std::io::ErrorKind;
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Robots of a simulation when nothing else is said.
-pub const DEFAULT_ROBOTS: usize = 12;
 /// Robots in QEMU when nothing else is said.
 const DEFAULT_EMULATED: usize = 4;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
@@ -47,16 +50,27 @@ pub struct Arguments {
     /// The world.
     scenario: PathBuf,
     /// Seed of everything random.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
-    /// How many robots.
-    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots)]
-    robots: usize,
+    /// How many robots, two of them mothers [default: the laboratory's].
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
+    robots: Option<usize>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Simulate in so many laboratories drawn around this one, and say in how many of them it works.
+    #[arg(long, value_name = "N", value_parser = robustness::count, allow_hyphen_values = true, conflicts_with_all = ["reality", "target"])]
+    realities: Option<u64>,
+    /// Simulate in one of these laboratories, by its number; 0 is the laboratory itself.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = robustness::number, allow_hyphen_values = true)]
+    reality: u64,
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
+    threads: Option<NonZeroUsize>,
     /// World metres per scenario metre [default: the blob's].
-    #[arg(long, value_parser = options::scale)]
+    #[arg(long, value_parser = options::scale, allow_hyphen_values = true)]
     scale: Option<f32>,
     /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
-    #[arg(long, default_value_t = DEFAULT_SPEED)]
+    #[arg(long, default_value_t = DEFAULT_SPEED, value_parser = options::speed, allow_hyphen_values = true)]
     speed: f64,
     /// Number type the robots compute in.
     #[arg(long, default_value = "f32")]
@@ -64,14 +78,14 @@ pub struct Arguments {
     /// Where controllers run: all in this process, or some in QEMU, from the image that is flashed.
     #[arg(long, default_value = "native")]
     target: Target,
-    /// How many of the robots are emulated with --target qemu.
-    #[arg(long, default_value_t = DEFAULT_EMULATED, value_parser = robots)]
-    emulated: usize,
+    /// How many of the robots are emulated with --target qemu [default: 4, or all if there are fewer].
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
+    emulated: Option<usize>,
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg. A trace has every tick, or of a run that is too long for
-    /// the memory every second, fourth, ….
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg; with --realities for realities.csv and realities.json. A
+    /// trace has every tick, or of a run that is too long for the memory every second, fourth, ….
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -86,7 +100,7 @@ enum Target {
 }
 
 /// What may be in the folder of `--out`.
-const FILES: [&str; 4] = ["metrics.json", "trace.bin", "trace.csv", "trace.svg"];
+const FILES: [&str; 6] = ["metrics.json", "realities.csv", "realities.json", "trace.bin", "trace.csv", "trace.svg"];
 
 /// Where `cargo xtask target` leaves images.
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
@@ -98,23 +112,36 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         files::blob_bytes(&blob).map_err(about("--scale"))?;
     }
     let scenario = Scenario::load(&arguments.scenario)?;
-    let config = SwarmConfig {
-        robots: arguments.robots,
-        seed: arguments.seed,
-        target_speed_m_per_s: arguments.speed,
-        ..usual_config(blob.scale, arguments.robots)
+    let lab = arguments.conditions.laboratory()?;
+    let config =
+        SwarmConfig { seed: arguments.seed, target_speed_m_per_s: arguments.speed, ..usual_config(blob.scale, lab) };
+    let config = match arguments.robots {
+        Some(count) => config.with_robots(count),
+        None => config,
     };
+    check_emulation(arguments, config.lab.robots.count)?;
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
+    let pool = options::pool(arguments.threads)?;
+    if let Some(count) = arguments.realities {
+        let experiment =
+            robustness::Experiment { blob: &blob, scenario: &scenario, config: &config, number: arguments.number };
+        let robustness = pool.install(|| experiment.run(&arguments.blob, count, &stop))?;
+        if let Some(lock) = &lock {
+            keep(lock.folder(), &experiment.files(&robustness)?)?;
+        }
+        return experiment.tell(&robustness, arguments.json);
+    }
+    let config = realities::reality(&config, arguments.reality);
     let simulation = match &lock {
         Some(lock) => {
             let mut recorder = recorder(&scenario, &config);
-            let simulation = simulated(arguments, &blob, &scenario, config, &mut recorder, &stop)?;
-            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob)?)?;
+            let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &mut recorder, &stop))?;
+            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob))?;
             simulation
         }
-        None => simulated(arguments, &blob, &scenario, config, &mut (), &stop)?,
+        None => pool.install(|| simulated(arguments, &blob, &scenario, config, &mut (), &stop))?,
     };
     if arguments.json {
         output::product_json(&metrics_json(&simulation, &scenario))?;
@@ -122,6 +149,22 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         output::report(table(&simulation));
     }
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
+}
+
+/// Refuses options of emulators without emulators, which would not do what they say, and more emulators than robots.
+fn check_emulation(arguments: &Arguments, robots: usize) -> Result<(), Failure> {
+    let Arguments { target, emulated, image, .. } = arguments;
+    let without = |option: String| {
+        Err(Failure::Input(format!("{option} is for robots in emulators; add --target qemu, or leave it out")))
+    };
+    match (target, image, emulated) {
+        (Target::Native, Some(image), _) => without(format!("--image {}", image.display())),
+        (Target::Native, None, Some(emulated)) => without(format!("--emulated {emulated}")),
+        (Target::Qemu, _, &Some(emulated)) if emulated > robots => {
+            Err(Failure::Input(format!("--emulated {emulated}: must be at most the number of robots, {robots}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn simulated(
@@ -143,10 +186,14 @@ fn simulated(
                     NumberType::Q8_24 => "robot-q8_24",
                 })
             });
-            let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
-            let path = &arguments.blob;
-            with_progress(path, stop, |watch| {
-                emulation::simulate(blob, scenario, config, number, &emulation, observer, watch)
+            let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.lab.robots.count));
+            let emulation = Emulation { image, robots };
+            with_progress(stop, |watch| {
+                let simulated = emulation::simulate(blob, scenario, config, number, &emulation, observer, watch);
+                simulated.map_err(|error| match error {
+                    EmulationError::Simulation(error) => of_blob(&arguments.blob)(error),
+                    error => error.into(),
+                })
             })
         }
         #[cfg(not(unix))]
@@ -161,11 +208,11 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
     let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
-    fits.map_err(|error| match error.field {
-        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value, error.expected)),
+    fits.map_err(|error| match error.key() {
+        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value(), error.expected())),
         "scale" | "robots" => {
             let [east, north] = scenario.region();
-            let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
+            let fault = format!("--{} {}: {}", error.key(), error.value(), error.expected());
             let error = InputError::new("region", format!("[{east:?}, {north:?}]"), fault);
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
@@ -174,15 +221,9 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
     })
 }
 
-/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
-pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
-    SwarmConfig {
-        robots,
-        mothers: robots.clamp(1, 2),
-        scale: f64::from(scale),
-        target_speed_m_per_s: DEFAULT_SPEED,
-        ..SwarmConfig::default()
-    }
+/// The usual run in a laboratory for a blob of this scale.
+pub fn usual_config(scale: f32, lab: Laboratory) -> SwarmConfig {
+    SwarmConfig { scale: f64::from(scale), target_speed_m_per_s: DEFAULT_SPEED, lab, ..SwarmConfig::default() }
 }
 
 /// Runs a simulation with a progress bar and Ctrl-C.
@@ -195,13 +236,22 @@ pub fn watched(
     observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, observer, watch))
+    with_progress(stop, |watch| {
+        simulation::simulate(blob, scenario, config, number, observer, watch).map_err(of_blob(path))
+    })
+}
+
+/// Names the blob where that is what is wrong.
+fn of_blob(path: &Path) -> impl Fn(SimulationError) -> Failure {
+    move |error| match error {
+        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(path.display())(error),
+        SimulationError::Config(_) | SimulationError::Brain(_) => error.into(),
+    }
 }
 
 fn with_progress(
-    blob: &Path,
     stop: &AtomicBool,
-    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
+    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, Failure>,
 ) -> Result<Simulation, Failure> {
     let style = progress::style("simulating {bar:40} {percent:>3} % · {left}", &progress::Found::default());
     let bar = ProgressBar::new(1000).with_style(style);
@@ -210,10 +260,6 @@ fn with_progress(
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.finish_and_clear();
-    let result = result.map_err(|error| match &error {
-        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(blob.display())(error),
-        SimulationError::Config(_) | SimulationError::Brain(_) | SimulationError::Emulator(_) => error.into(),
-    });
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
@@ -226,8 +272,8 @@ pub fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
 }
 
 /// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation, scenario))? + "\n";
+pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Contents {
+    let metrics = format!("{:#}\n", metrics_json(simulation, scenario));
     let mut contents = Contents::from([
         ("trace.bin".into(), trace.encode()),
         ("trace.csv".into(), trace.to_csv()),
@@ -237,18 +283,12 @@ pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: 
         Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
         Err(error) => output::notice(format_args!("no trace.svg: {error}")),
     }
-    Ok(contents)
+    contents
 }
 
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
-    let manifest = folder.join("manifest.json");
-    if manifest.exists() {
-        let fault =
-            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
-        return Err(about(manifest.display())(fault));
-    }
-    let lock = FolderLock::take(folder, &this_command())?;
+    let lock = take_folder(folder)?;
     FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }
@@ -275,9 +315,10 @@ fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Val
         "number": simulation.number,
         "scenario": scenario.name(),
         "seed": simulation.config.seed,
-        "robots": simulation.config.robots,
+        "robots": simulation.config.lab.robots.count,
+        "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "swarm": simulation.config,
+        "conditions": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

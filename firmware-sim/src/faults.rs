@@ -119,9 +119,11 @@ impl FaultPlan {
         &self.0
     }
 
-    /// One robot's faults, by when they begin.
-    pub fn of(&self, robot: usize) -> Vec<Fault> {
-        self.0.iter().filter(|fault| fault.robot == robot).copied().collect()
+    /// The faults of each of so many robots, by when they begin.
+    pub fn by_robot(&self, robots: usize) -> Vec<Vec<Fault>> {
+        let mut by_robot = vec![Vec::new(); robots];
+        self.0.iter().for_each(|fault| by_robot[fault.robot].push(*fault));
+        by_robot
     }
 
     /// The ticks in which something goes wrong while the swarm is under way, or a robot joins it; rising.
@@ -208,11 +210,11 @@ impl Absences {
         }
     }
 
-    /// Whether the robot is in service in this tick.
-    pub fn is_present(&self, robot: usize, tick: u64) -> bool {
+    /// Whether the robot is in service in all of these ticks.
+    pub fn none_in(&self, robot: usize, ticks: Range<u64>) -> bool {
         self.robots.get(robot).is_none_or(|known| {
-            let begun = known.partition_point(|ticks| ticks.start <= tick);
-            known[..begun].last().is_none_or(|ticks| tick >= ticks.end)
+            let begun = known.partition_point(|known| known.start < ticks.end);
+            known[..begun].last().is_none_or(|known| known.end <= ticks.start)
         })
     }
 }
@@ -247,8 +249,9 @@ mod tests {
         let length = stops.iter().map(|stop| stop.until.unwrap() - stop.from).sum::<u64>() as f64 * FRAME_S;
         assert!((length / stops.len() as f64 / 20.0 - 1.0).abs() < 0.05, "{length}");
         assert!(plan.faults().is_sorted_by_key(|fault| fault.from));
-        for robot in 0..100 {
-            let own = plan.of(robot);
+        let by_robot = plan.by_robot(100);
+        assert_eq!(by_robot.iter().map(Vec::len).sum::<usize>(), plan.faults().len());
+        for own in by_robot {
             let stops: Vec<_> = own.iter().filter(|fault| fault.kind == FaultKind::Stop).collect();
             assert!(stops.windows(2).all(|pair| pair[1].from >= pair[0].until.unwrap()));
         }
@@ -284,8 +287,8 @@ mod tests {
         let absent = |kind, lasts_s| {
             let plan = FaultPlan::drawn(&lab(scheduled(kind, Some(3), None, lasts_s), 12), 1, HOUR).unwrap();
             let absences = plan.absences();
-            assert!((0..12).filter(|&robot| robot != 3).all(|robot| absences.is_present(robot, 960)));
-            let ticks: Vec<u64> = (0..2000).filter(|&tick| !absences.is_present(3, tick)).collect();
+            assert!((0..12).filter(|&robot| robot != 3).all(|robot| absences.none_in(robot, 0..u64::MAX)));
+            let ticks: Vec<u64> = (0..2000).filter(|&tick| !absences.none_in(3, tick..tick + 1)).collect();
             (ticks.first().copied(), ticks.len(), plan.disturbances())
         };
         assert_eq!(absent(FaultKind::Stop, None), (Some(960), 1040, vec![960]));
@@ -299,8 +302,9 @@ mod tests {
         }
         let mut absences = Absences::default();
         [(5..10), (8..9), (10..12), (20..30)].into_iter().for_each(|ticks| absences.add(1, ticks));
-        let away: Vec<u64> = (0..40).filter(|&tick| !absences.is_present(1, tick)).collect();
+        let away: Vec<u64> = (0..40).filter(|&tick| !absences.none_in(1, tick..tick + 1)).collect();
         assert_eq!(away, (5..12).chain(20..30).collect::<Vec<_>>());
+        assert!(absences.none_in(1, 12..20) && !absences.none_in(1, 12..21) && !absences.none_in(1, 11..20));
     }
 
     #[test]

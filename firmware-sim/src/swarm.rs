@@ -182,8 +182,8 @@ impl<B: Brain> Swarm<B> {
         let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
-        let unit = |robot| Unit::new(robot, brain(robot), &config, faults.of(robot), &tracker, &ether, samples.len());
-        let units = (0..n).map(unit).collect();
+        let unit = |(robot, faults)| Unit::new(robot, brain(robot), &config, faults, &tracker, &ether, samples.len());
+        let units = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
         let mut swarm = Swarm {
             wall_index: WallIndex::new(world.walls(), WALL_REACH),
             ring: ProximityRing::new(&lab.proximity),

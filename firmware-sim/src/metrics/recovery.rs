@@ -14,13 +14,6 @@ pub struct Recovery {
     pub encircled_share: Option<f64>,
 }
 
-impl Recovery {
-    /// How long it took to form again, seconds.
-    pub fn reformed_after_s(&self) -> Option<f64> {
-        self.reformed_at_s.map(|reformed| reformed - self.disturbed_at_s)
-    }
-}
-
 /// Finds the first moment from which something stays as it should for long enough, and counts from there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forming {
@@ -52,6 +45,11 @@ impl Forming {
     /// The tick from which on it was good for long enough.
     pub fn formed_at(&self) -> Option<u64> {
         self.since.filter(|_| self.formed)
+    }
+
+    /// How many moments there were since then.
+    pub fn moments(&self) -> u64 {
+        self.moments
     }
 
     /// Share of the moments from then on that were good.

@@ -319,7 +319,7 @@ fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Val
         "robots": simulation.config.lab.robots.count,
         "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "conditions": simulation.config,
+        "swarm": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,
@@ -369,10 +369,11 @@ pub fn table(simulation: &Simulation) -> String {
         ),
         ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
     ];
-    if let Some(last) = metrics.recoveries.last() {
-        let never = if last.reformed_at_s.is_none() { "never".into() } else { percent(last.encircled_share) };
-        rows.push(("re-formed after last fault", seconds(last.reformed_after_s()), String::new(), ""));
-        rows.push(("encircled once re-formed", never, String::new(), ""));
+    if !metrics.recoveries.is_empty() {
+        let reformed = metrics.recoveries.iter().filter(|recovery| recovery.reformed_at_s.is_some()).count();
+        let least = metrics.recoveries.iter().filter_map(|recovery| recovery.encircled_share).reduce(f64::min);
+        rows.push(("re-formed after faults", format!("{reformed} of {}", metrics.recoveries.len()), String::new(), ""));
+        rows.push(("then encircled, at least", percent(least), String::new(), ""));
     }
     rows.push(("works", String::new(), String::new(), mark(verdict.works())));
     let mut text = format!("{:<28}{:>14}   {:<14}{}\n", "", "measured", "wanted", "met");

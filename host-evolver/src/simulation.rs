@@ -28,6 +28,22 @@ pub const ENOUGH_UNKNOWN: f64 = 0.05;
 /// Most contacts between robots, for each robot: one may bump into another while the swarm forms, not again and again.
 pub const ENOUGH_PEER_CONTACTS: f64 = 1.0;
 
+/// Robots of a simulation when nothing else is said.
+pub const DEFAULT_ROBOTS: usize = 12;
+/// Speed of the fastest target when nothing else is said, metres per second in the world.
+pub const DEFAULT_SPEED: f64 = 0.03;
+
+/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
+pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
+    SwarmConfig {
+        robots,
+        mothers: robots.clamp(1, 2),
+        scale: f64::from(scale),
+        target_speed_m_per_s: DEFAULT_SPEED,
+        ..SwarmConfig::default()
+    }
+}
+
 /// Why there was no simulation.
 #[derive(Debug)]
 pub enum SimulationError {

@@ -1,6 +1,6 @@
 //! `grn evolve`.
 
-use super::simulate::{self, DEFAULT_ROBOTS, check_swarm, table, usual_config, watched};
+use super::simulate::{check_swarm, table, watched};
 use super::{Answer, Failure, about, interrupt, no_threads, options, output, progress, this_command};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
@@ -8,7 +8,9 @@ use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
+use crate::record;
 use crate::run::{Manifest, Results, RunFolder};
+use crate::simulation::{DEFAULT_ROBOTS, usual_config};
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
@@ -98,9 +100,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     }
     let robots = config.robots;
     let simulation = watched(&run.path("knee.grn"), &knee, &scenario, config, NumberType::F32, &stop)?;
-    for (name, content) in simulate::files(&simulation, &scenario, &knee)? {
-        contents.insert(format!("simulation/{name}"), content);
-    }
+    let (recorded, not_drawn) = record::contents(&simulation, &scenario, &knee);
+    not_drawn.iter().for_each(output::notice);
+    contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
     run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
     output::report(table(&simulation));

@@ -3,9 +3,12 @@
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation};
-use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
+use crate::record;
+use crate::simulation::{
+    self, DEFAULT_ROBOTS, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation,
+    SimulationError, usual_config,
+};
 use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
@@ -13,19 +16,13 @@ use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
-use serde_json::json;
 use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Robots of a simulation when nothing else is said.
-pub const DEFAULT_ROBOTS: usize = 12;
 /// Robots in QEMU when nothing else is said.
 const DEFAULT_EMULATED: usize = 4;
-/// Speed of the fastest target when nothing else is said, metres per second in the world.
-pub const DEFAULT_SPEED: f64 = 0.03;
-
 const BARS: &str = "\
 A run works (exit code 0) if all of this holds:
   encircled         every target, in at least 98 % of the moments after the swarm formed
@@ -84,9 +81,6 @@ enum Target {
     Qemu,
 }
 
-/// What may be in the folder of `--out`.
-const FILES: [&str; 4] = ["metrics.json", "trace.bin", "trace.csv", "trace.svg"];
-
 /// Where `cargo xtask target` leaves images.
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
 
@@ -108,10 +102,12 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let lock = arguments.out.as_deref().map(take).transpose()?;
     let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
     if let Some(lock) = &lock {
-        keep(lock.folder(), &files(&simulation, &scenario, &blob)?)?;
+        let (contents, not_drawn) = record::contents(&simulation, &scenario, &blob);
+        not_drawn.iter().for_each(output::notice);
+        keep(lock.folder(), &contents)?;
     }
     if arguments.json {
-        output::product_json(&metrics_json(&simulation))?;
+        output::product_json(&record::metrics(&simulation))?;
     } else {
         output::report(table(&simulation));
     }
@@ -165,17 +161,6 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
     })
 }
 
-/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
-pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
-    SwarmConfig {
-        robots,
-        mothers: robots.clamp(1, 2),
-        scale: f64::from(scale),
-        target_speed_m_per_s: DEFAULT_SPEED,
-        ..SwarmConfig::default()
-    }
-}
-
 /// Runs a simulation with a progress bar and Ctrl-C.
 pub fn watched(
     path: &Path,
@@ -207,23 +192,6 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
-/// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<Contents, Failure> {
-    let mut csv = Vec::new();
-    simulation.trace.to_csv(&mut csv).map_err(about("trace.csv"))?;
-    let metrics = serde_json::to_string_pretty(&metrics_json(simulation))? + "\n";
-    let mut contents = Contents::from([
-        ("trace.bin".into(), simulation.trace.encode()),
-        ("trace.csv".into(), csv),
-        ("metrics.json".into(), metrics.into_bytes()),
-    ]);
-    match figures::run(simulation, scenario, blob) {
-        Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
-        Err(error) => output::notice(format_args!("no trace.svg: {error}")),
-    }
-    Ok(contents)
-}
-
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
     let manifest = folder.join("manifest.json");
@@ -233,14 +201,14 @@ fn take(folder: &Path) -> Result<FolderLock, Failure> {
         return Err(about(manifest.display())(fault));
     }
     let lock = FolderLock::take(folder, &this_command())?;
-    FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
+    record::FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }
 
 /// Writes the files of a run, and removes those of an earlier one that this one has not.
 fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     files::write_together(contents.iter().map(|(name, content)| (folder.join(name), content.as_slice())))?;
-    for stale in FILES.iter().filter(|name| !contents.contains_key(**name)).map(|name| folder.join(name)) {
+    for stale in record::FILES.iter().filter(|name| !contents.contains_key(**name)).map(|name| folder.join(name)) {
         match std::fs::remove_file(&stale) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 return Err(FileError::from_system(stale, "removed", error));
@@ -249,25 +217,6 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
         }
     }
     Ok(())
-}
-
-fn metrics_json(simulation: &Simulation) -> serde_json::Value {
-    let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
-    json!({
-        "grn": files::VERSION,
-        "blob": identity,
-        "number": simulation.number,
-        "scenario": simulation.trace.header().scenario,
-        "seed": simulation.config.seed,
-        "robots": simulation.config.robots,
-        "scale": simulation.config.scale,
-        "swarm": simulation.config,
-        "ring_radius_m": simulation.ring_radius_m,
-        "radial_error_share": simulation.radial_error_share(),
-        "metrics": simulation.metrics,
-        "verdict": simulation.verdict(),
-        "works": simulation.verdict().works(),
-    })
 }
 
 /// What came out, one bar a line.

@@ -183,11 +183,23 @@ pub(crate) fn run<B: Brain>(
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }
-    let stop_ticks = swarm.config().stop_ticks();
-    let options = MetricsOptions { walls: swarm.walls(), ring_radius_m: ruler.ring_radius(), stop_ticks: &stop_ticks };
-    let metrics = Metrics::of(swarm.trace(), &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
-    let (ring_radius_m, blob) = (ruler.ring_radius(), blob.identity());
-    Ok(Some(Simulation { trace: swarm.into_trace(), metrics, ring_radius_m, blob, number, config }))
+    Ok(Some(measured(blob, &ruler, swarm.into_trace(), config, number)))
+}
+
+/// What a recorded run is worth, wherever it was recorded: robots that drove elsewhere than in this simulator are measured
+/// with the same ruler. The trace must be of the scenario that the ruler is of, at the configured scale.
+pub fn measured(
+    blob: &Blob,
+    ruler: &PatternRuler<'_>,
+    trace: Trace,
+    config: SwarmConfig,
+    number: NumberType,
+) -> Simulation {
+    let walls = ruler.scenario.walls().scaled(config.scale);
+    let (ring_radius_m, stop_ticks) = (ruler.ring_radius(), config.stop_ticks());
+    let options = MetricsOptions { walls: &walls, ring_radius_m, stop_ticks: &stop_ticks };
+    let metrics = Metrics::of(&trace, &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
+    Simulation { trace, metrics, ring_radius_m, blob: blob.identity(), number, config }
 }
 
 /// The most memory that the record of a run may take, bytes. To write it as text and as bytes takes four times as much more,

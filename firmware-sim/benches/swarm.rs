@@ -128,12 +128,10 @@ fn swarm<B: Brain>(scenario: &Scenario, scale: f64, brain: impl FnMut(usize) -> 
     swarm
 }
 
-fn run<B: Brain>(swarm: &mut Swarm<B>) -> usize {
-    swarm.restart_trace();
+fn run<B: Brain>(swarm: &mut Swarm<B>) {
     for _ in 0..TICKS {
         expect(swarm.step());
     }
-    swarm.trace().len()
 }
 
 /// A swarm of real controllers under way, of which every `recorded`-th keeps a record.

@@ -4,6 +4,7 @@ use crate::radio::RadioConfig;
 use crate::sensors::Noise;
 use core::fmt;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The most robots in a swarm: senders are numbered in a byte.
 pub const MAX_ROBOTS: usize = 250;
@@ -120,6 +121,12 @@ impl SwarmConfig {
     pub fn stop_ticks(&self) -> Vec<Option<u64>> {
         let first = |robot| self.stops.iter().filter(|stop| stop.robot == robot).map(|stop| stop.tick).min();
         (0..self.robots).map(first).collect()
+    }
+
+    /// The ticks in which a robot breaks down while the swarm is under way, rising.
+    pub fn disturbances(&self) -> Vec<u64> {
+        let ticks: BTreeSet<u64> = self.stops.iter().map(|stop| stop.tick).filter(|&tick| tick > 0).collect();
+        ticks.into_iter().collect()
     }
 }
 

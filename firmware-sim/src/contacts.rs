@@ -6,6 +6,7 @@ use crate::grid::WallIndex;
 use grn_core::geometry::Vector;
 use grn_core::robot::epuck2::BODY_RADIUS;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// A contact ends when the gap has grown beyond this, metres: bodies that tremble at touching distance have one contact, not many.
 pub const RELEASE_GAP: f64 = 0.001;
@@ -16,33 +17,36 @@ const PASSES: usize = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ContactCounts {
     /// Pairs of robots that began to touch.
-    pub peer_events: u16,
+    pub peer_events: u32,
     /// Robots that began to touch walls.
-    pub wall_events: u16,
+    pub wall_events: u32,
     /// Pairs of robots in contact.
-    pub peers: u16,
+    pub peers: u32,
     /// Robots in contact with walls.
-    pub walls: u16,
+    pub walls: u32,
+}
+
+impl ContactCounts {
+    /// These, and the events of those before them.
+    #[must_use]
+    pub fn after(self, before: ContactCounts) -> ContactCounts {
+        let peer_events = before.peer_events.saturating_add(self.peer_events);
+        ContactCounts { peer_events, wall_events: before.wall_events.saturating_add(self.wall_events), ..self }
+    }
 }
 
 /// Who touches whom.
 #[derive(Debug)]
 pub struct Contacts {
-    robots: usize,
-    touching: Vec<bool>,
-    pairs: Vec<(u16, u16)>,
+    /// Pairs in contact.
+    touching: BTreeSet<(u16, u16)>,
     at_wall: Vec<bool>,
 }
 
 impl Contacts {
     /// No contacts among this many robots.
     pub fn new(robots: usize) -> Self {
-        Contacts {
-            robots,
-            touching: vec![false; robots * robots],
-            pairs: Vec::with_capacity(robots * 8),
-            at_wall: vec![false; robots],
-        }
+        Contacts { touching: BTreeSet::new(), at_wall: vec![false; robots] }
     }
 
     /// Pushes overlapping bodies apart and out of walls, and counts. `near` holds every pair that can overlap.
@@ -69,17 +73,12 @@ impl Contacts {
                 let push = direction * (BODY_RADIUS - distance / 2.0);
                 poses[i].position = poses[i].position - push;
                 poses[j].position = poses[j].position + push;
-                let cell = i * self.robots + j;
-                if !self.touching[cell] {
-                    self.touching[cell] = true;
-                    self.pairs.push((a, b));
-                    counts.peer_events += 1;
-                }
+                counts.peer_events += u32::from(self.touching.insert((a, b)));
             }
             for (pose, at_wall) in poses.iter_mut().zip(&mut self.at_wall) {
                 if push_out(pose, walls, index) {
                     moved = true;
-                    counts.wall_events += u16::from(!*at_wall);
+                    counts.wall_events += u32::from(!*at_wall);
                     *at_wall = true;
                 }
             }
@@ -88,20 +87,18 @@ impl Contacts {
             }
         }
         self.release(poses, index);
-        counts.peers = self.pairs.len().min(usize::from(u16::MAX)) as u16;
-        counts.walls = self.at_wall.iter().map(|&touches| u16::from(touches)).sum();
+        counts.peers = self.touching.len() as u32;
+        counts.walls = self.at_wall.iter().map(|&touches| u32::from(touches)).sum();
         counts
     }
 
     /// Forgets contacts whose gap has opened.
     fn release(&mut self, poses: &[Pose], index: &WallIndex) {
-        let Contacts { robots, touching, pairs, at_wall } = self;
+        let Contacts { touching, at_wall } = self;
         let limit = (2.0 * BODY_RADIUS + RELEASE_GAP) * (2.0 * BODY_RADIUS + RELEASE_GAP);
-        pairs.retain(|&(a, b)| {
-            let (i, j) = (usize::from(a), usize::from(b));
-            let keep = length_squared(poses[j].position - poses[i].position) <= limit;
-            touching[i * *robots + j] = keep;
-            keep
+        touching.retain(|&(a, b)| {
+            let offset = poses[usize::from(b)].position - poses[usize::from(a)].position;
+            length_squared(offset) <= limit
         });
         let limit = (BODY_RADIUS + RELEASE_GAP) * (BODY_RADIUS + RELEASE_GAP);
         for (pose, at_wall) in poses.iter().zip(at_wall).filter(|(_, at_wall)| **at_wall) {

@@ -42,7 +42,7 @@ pub mod trace;
 
 pub use brain::{Brain, BrainError};
 pub use config::{ConfigError, Stop, SwarmConfig};
-pub use metrics::{Metrics, MetricsOptions};
+pub use metrics::{Meter, Metrics, MetricsOptions};
 pub use scenario::{InputError, Scenario};
 pub use swarm::{Outcome, Progress, StepError, Swarm};
-pub use trace::{Trace, TraceError};
+pub use trace::{Observer, Recorder, Trace, TraceError};

@@ -18,7 +18,7 @@ use crate::scenario::{PERCEPTION_RANGE, Scenario};
 use crate::sensors::{
     ALL_FREE, FarSense, FreeDistances, ProximityRing, ROBOT_REACH, Seen, WALL_REACH, localise, micrometres, unit_q14,
 };
-use crate::trace::{RobotState, Trace, TraceHeader};
+use crate::trace::{Frame, Observer, RobotState};
 use core::fmt;
 use core::ops::ControlFlow;
 use grn_core::geometry::Point;
@@ -92,7 +92,15 @@ pub struct Swarm<B> {
     contacts: Contacts,
     targets: Vec<Point<f64>>,
     tick: u64,
-    trace: Trace,
+    recorded: Recorded,
+}
+
+/// The present moment as observers see it.
+#[derive(Default)]
+struct Recorded {
+    targets_um: Vec<[i32; 2]>,
+    robots: Vec<RobotState>,
+    contacts: ContactCounts,
 }
 
 impl<B> fmt::Debug for Swarm<B> {
@@ -160,17 +168,6 @@ impl<B: Brain> Swarm<B> {
             Drive::new(&BodyParameters::varied([factor(), factor(), factor()]))
         });
         let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
-        let header = TraceHeader {
-            scenario: scenario.name().to_owned(),
-            seed: config.seed,
-            scale: config.scale,
-            settle_s: config.settle_s,
-            target_speed_m_per_s: config.target_speed_m_per_s,
-            ticks_per_second: TICKS_PER_SECOND,
-            robots: n as u16,
-            mothers: config.mothers as u16,
-            targets: world.paths().len() as u16,
-        };
         let mut swarm = Swarm {
             wall_index: WallIndex::new(world.walls(), WALL_REACH),
             brains: (0..n).map(&mut brain).collect(),
@@ -191,7 +188,7 @@ impl<B: Brain> Swarm<B> {
             contacts: Contacts::new(n),
             targets: world.targets_at(0.0),
             tick: 0,
-            trace: Trace::new(header),
+            recorded: Recorded::default(),
             world,
             config,
         };
@@ -234,20 +231,10 @@ impl<B: Brain> Swarm<B> {
         &self.brains
     }
 
-    /// Everything recorded so far, from the start on.
-    pub fn trace(&self) -> &Trace {
-        &self.trace
-    }
-
-    /// The recorded run, giving up the swarm.
-    pub fn into_trace(self) -> Trace {
-        self.trace
-    }
-
-    /// Forgets the record and begins a new one with the present state; for runs too long to keep.
-    pub fn restart_trace(&mut self) {
-        self.trace = Trace::new(self.trace.header().clone());
-        self.record(ContactCounts::default());
+    /// The present moment.
+    pub fn frame(&self) -> Frame<'_> {
+        let Recorded { targets_um, robots, contacts } = &self.recorded;
+        Frame { tick: self.tick, targets_um, robots, contacts: *contacts }
     }
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
@@ -259,19 +246,27 @@ impl<B: Brain> Swarm<B> {
         self.world.longest_path() / self.config.target_speed_m_per_s
     }
 
-    /// Simulates up to the tick `end`. `watch` is called before each simulated second and at the end, and may stop the
-    /// run.
+    /// Simulates up to the tick `end`. `observer` sees the start, if nothing has been simulated yet, and the world after
+    /// every tick. `watch` is called before each simulated second and at the end, and may stop the run.
     ///
     /// # Errors
-    /// [`StepError`] when a brain fails; the trace then ends with the last whole tick.
-    pub fn run(&mut self, end: u64, mut watch: impl FnMut(Progress) -> ControlFlow<()>) -> Result<Outcome, StepError> {
-        self.trace.reserve(usize::try_from(end.saturating_sub(self.tick)).unwrap_or(0).min(1 << 16));
+    /// [`StepError`] when a brain fails; the observer has then seen the last whole tick.
+    pub fn run(
+        &mut self,
+        end: u64,
+        observer: &mut (impl Observer + ?Sized),
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Outcome, StepError> {
+        if self.tick == 0 {
+            observer.observe(&self.frame());
+        }
         while self.tick < end {
             let whole_second = self.tick.is_multiple_of(u64::from(TICKS_PER_SECOND));
             if whole_second && watch(Progress { tick: self.tick, end }).is_break() {
                 return Ok(Outcome::Interrupted);
             }
             self.step()?;
+            observer.observe(&self.frame());
         }
         let _ = watch(Progress { tick: self.tick, end });
         Ok(Outcome::Finished)
@@ -362,7 +357,11 @@ impl<B: Brain> Swarm<B> {
             heading_q14: [unit_q14(pose.heading.x), unit_q14(pose.heading.y)],
             wheels,
         });
-        self.trace.push(self.targets.iter().map(|&target| um(target)), robots, contacts);
+        self.recorded.targets_um.clear();
+        self.recorded.targets_um.extend(self.targets.iter().map(|&target| um(target)));
+        self.recorded.robots.clear();
+        self.recorded.robots.extend(robots);
+        self.recorded.contacts = contacts;
     }
 }
 

@@ -7,6 +7,7 @@ use firmware_sim::config::SwarmConfig;
 use firmware_sim::link::RemoteBrain;
 use firmware_sim::link::qemu::Emulator;
 use firmware_sim::scenario::Scenario;
+use firmware_sim::trace::Observer;
 use grn_core::blob::Blob;
 use grn_core::scalar::{NumberType, Q8_24};
 use grn_link::{Client, Patience};
@@ -33,6 +34,7 @@ pub fn simulate(
     config: SwarmConfig,
     number: NumberType,
     emulation: &Emulation,
+    observer: &mut dyn Observer,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     // Sockets are removed when the emulators have ended.
@@ -40,8 +42,10 @@ pub fn simulate(
     let emulated = (0..emulation.robots).map(|robot| emulation.start(robot, sockets.path(), blob, number));
     let emulated = emulated.collect::<Result<Vec<_>, _>>()?;
     match number {
-        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), watch),
-        NumberType::Q8_24 => run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), watch),
+        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), observer, watch),
+        NumberType::Q8_24 => {
+            run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), observer, watch)
+        }
     }
 }
 

@@ -7,9 +7,9 @@ use crate::model::describe;
 use crate::model::notation::Digits;
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
 use firmware_sim::geometry::Bounds;
-use firmware_sim::metrics::largest_gap;
+use firmware_sim::metrics::Bearings;
 use firmware_sim::scenario::{Ring, Scenario};
-use firmware_sim::trace::{Frame, RobotState, metres};
+use firmware_sim::trace::{Frame, RobotState, Trace, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
 use grn_core::network::Network;
@@ -189,13 +189,12 @@ const SAMPLES: usize = 600;
 ///
 /// # Errors
 /// Numbers that cannot be drawn.
-pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<String, FigureError> {
+pub fn run(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Result<String, FigureError> {
     let scale = f64::from(blob.scale);
-    let frames: Vec<Frame<'_>> = simulation.trace.frames().collect();
-    let per_second = f64::from(simulation.trace.header().ticks_per_second);
+    let frames: Vec<Frame<'_>> = trace.frames().collect();
     let stride = frames.len().div_ceil(SAMPLES).max(1);
     let sampled: Vec<(f64, &Frame<'_>)> =
-        frames.iter().enumerate().step_by(stride).map(|(tick, frame)| (tick as f64 / per_second, frame)).collect();
+        frames.iter().enumerate().step_by(stride).map(|(place, frame)| (trace.seconds(place), frame)).collect();
     let robots = frames.first().map_or(0, |frame| frame.robots.len());
     let trajectory =
         |robot: usize| sampled.iter().map(|(_, frame)| pair(metres(frame.robots[robot].position_um))).collect();
@@ -211,7 +210,7 @@ pub fn run(simulation: &Simulation, scenario: &Scenario, blob: &Blob) -> Result<
         target_paths: paths(&world),
         trajectories,
         body_radius: BODY_RADIUS,
-        instants: instants(&frames, per_second, scenario, blob),
+        instants: instants(&frames, trace, scenario, blob),
         times: sampled.iter().map(|(time, _)| *time).collect(),
         gaps: gaps(&sampled, scenario.paths().len()),
         radial_error: sampled.iter().map(|(_, frame)| median_error(frame, ruler.as_ref())).collect(),
@@ -228,10 +227,10 @@ fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: Option<f64>) ->
 }
 
 fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<f64>> {
-    let mut bearings = Vec::new();
+    let mut bearings = Bearings::default();
     let mut gap = |frame: &Frame<'_>, target: usize| {
-        let robots = frame.robots.iter().map(|robot| metres(robot.position_um));
-        largest_gap(metres(frame.targets_um[target]), robots, &mut bearings).to_degrees()
+        bearings.take(metres(frame.targets_um[target]), frame.robots.iter().map(|robot| metres(robot.position_um)));
+        bearings.largest_gap().to_degrees()
     };
     (0..targets).map(|target| sampled.iter().map(|(_, frame)| gap(frame, target)).collect()).collect()
 }
@@ -247,21 +246,20 @@ fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> Option<f
     errors.get(errors.len() / 2).copied().filter(|error| error.is_finite())
 }
 
-fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {
-    if frames.is_empty() {
-        return Vec::new();
-    }
-    let seconds = (frames.len().saturating_sub(1) as f64 / per_second).floor();
+fn instants(frames: &[Frame<'_>], trace: &Trace, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {
+    let Some(last) = frames.len().checked_sub(1) else { return Vec::new() };
+    let seconds = trace.seconds(last).floor();
     let whole_second = |instant: usize| (seconds * instant as f64 / (INSTANTS - 1) as f64).round();
-    let mut ticks: Vec<usize> = (0..INSTANTS).map(|instant| (whole_second(instant) * per_second) as usize).collect();
+    let place = |instant: usize| ((whole_second(instant) / trace.seconds(1)) as usize).min(last);
+    let mut places: Vec<usize> = (0..INSTANTS).map(place).collect();
     // A run of few seconds has fewer moments.
-    ticks.dedup();
+    places.dedup();
     let scale = f64::from(blob.scale);
     let unscaled = |target: &[i32; 2]| {
         let point = metres(*target);
         Point::new(point.x / scale, point.y / scale)
     };
-    let moments = ticks.iter().map(|&tick| frames[tick].targets_um.iter().map(unscaled).collect()).collect();
+    let moments = places.iter().map(|&place| frames[place].targets_um.iter().map(unscaled).collect()).collect();
     let world = World::at(scenario.clone(), moments);
     let model = Model::new(&blob.network, f64::from(blob.level_fraction)).ok();
     let mut tracer = Tracer::new(&world);
@@ -270,9 +268,9 @@ fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &B
         .flat_map(|model| tracer.trace_all(model).map(|(_, contours)| contours).collect::<Vec<_>>())
         .collect();
     let scaled = |ring: &Vec<Point<f64>>| ring.iter().map(|point| [point.x * scale, point.y * scale]).collect();
-    let instant = |(place, &tick): (usize, &usize)| grn_figures::Instant {
-        time: tick as f64 / per_second,
-        robots: frames[tick]
+    let instant = |(number, &place): (usize, &usize)| grn_figures::Instant {
+        time: trace.seconds(place),
+        robots: frames[place]
             .robots
             .iter()
             .map(|robot| grn_figures::Pose {
@@ -280,10 +278,10 @@ fn instants(frames: &[Frame<'_>], per_second: f64, scenario: &Scenario, blob: &B
                 heading: heading(robot.heading_q14),
             })
             .collect(),
-        targets: frames[tick].targets_um.iter().map(|&target| pair(metres(target))).collect(),
-        contours: rings.get(place).map(|contours| contours.rings.iter().map(scaled).collect()).unwrap_or_default(),
+        targets: frames[place].targets_um.iter().map(|&target| pair(metres(target))).collect(),
+        contours: rings.get(number).map(|contours| contours.rings.iter().map(scaled).collect()).unwrap_or_default(),
     };
-    ticks.iter().enumerate().map(instant).collect()
+    places.iter().enumerate().map(instant).collect()
 }
 
 fn heading([cos, sin]: [i16; 2]) -> f64 {

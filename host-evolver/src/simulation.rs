@@ -3,10 +3,11 @@
 use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
 use firmware_sim::config::{ConfigError, SwarmConfig};
-use firmware_sim::metrics::{Metrics, MetricsOptions};
+use firmware_sim::geometry::Walls;
+use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
-use firmware_sim::swarm::{Outcome, Swarm};
-use firmware_sim::trace::Trace;
+use firmware_sim::swarm::{Outcome, Progress, Swarm};
+use firmware_sim::trace::Observer;
 use grn_core::blob::{Blob, Identity};
 use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
@@ -74,8 +75,6 @@ impl std::error::Error for SimulationError {}
 
 /// A finished run.
 pub struct Simulation {
-    /// Every tick of it.
-    pub trace: Trace,
     /// What it was worth.
     pub metrics: Metrics,
     /// Radius of the model's ring around a lone target in free space, world metres.
@@ -123,7 +122,7 @@ impl Simulation {
 
     /// The most contacts between robots that a working swarm of this size has.
     pub fn allowed_peer_contacts(&self) -> u64 {
-        (ENOUGH_PEER_CONTACTS * f64::from(self.trace.header().robots)) as u64
+        (ENOUGH_PEER_CONTACTS * self.config.robots as f64) as u64
     }
 
     /// Whether the controller works.
@@ -141,8 +140,9 @@ impl Simulation {
     }
 }
 
-/// Runs `blob` on every robot until all targets have arrived. `watch` is called once a simulated second with the share
-/// done and may stop the run.
+/// Runs `blob` on every robot until all targets have arrived. `observer` sees every tick; a
+/// [`Recorder`](firmware_sim::trace::Recorder) keeps them, `()` does not. `watch` is called once a simulated second with the
+/// share done and may stop the run.
 ///
 /// # Errors
 /// [`SimulationError`]; `Ok(None)` if `watch` stopped it.
@@ -151,11 +151,12 @@ pub fn simulate(
     scenario: &Scenario,
     config: SwarmConfig,
     number: NumberType,
+    observer: &mut dyn Observer,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        NumberType::F32 => run(blob, scenario, config, number, native::<f32>(blob)?, watch),
-        NumberType::Q8_24 => run(blob, scenario, config, number, native::<Q8_24>(blob)?, watch),
+        NumberType::F32 => run(blob, scenario, config, number, native::<f32>(blob)?, observer, watch),
+        NumberType::Q8_24 => run(blob, scenario, config, number, native::<Q8_24>(blob)?, observer, watch),
     }
 }
 
@@ -172,63 +173,79 @@ pub(crate) fn run<B: Brain>(
     config: SwarmConfig,
     number: NumberType,
     brain: impl FnMut(usize) -> B,
+    observer: &mut dyn Observer,
     mut watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     let ruler = PatternRuler::new(blob, scenario).map_err(SimulationError::NoPattern)?;
     check_length(scenario, &config).map_err(SimulationError::Config)?;
     let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
-    let outcome = swarm.run(end, |progress| watch(progress.tick as f64 / progress.end.max(1) as f64));
+    let marks = Marks::of(scenario, &config);
+    let mut meter = meter(&ruler, &marks, TICKS_PER_SECOND);
+    let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
+    let outcome = swarm.run(end, &mut (&mut meter, observer), |progress| watch(share(progress)));
     match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }
-    Ok(Some(measured(blob, &ruler, swarm.into_trace(), config, number)))
+    let (metrics, ring_radius_m, blob) = (meter.metrics(), ruler.ring_radius(), blob.identity());
+    Ok(Some(Simulation { metrics, ring_radius_m, blob, number, config }))
 }
 
-/// What a recorded run is worth, wherever it was recorded: robots that drove elsewhere than in this simulator are measured
-/// with the same ruler. The trace must be of the scenario that the ruler is of, at the configured scale.
-pub fn measured(
-    blob: &Blob,
-    ruler: &PatternRuler<'_>,
-    trace: Trace,
-    config: SwarmConfig,
-    number: NumberType,
-) -> Simulation {
-    let walls = ruler.scenario.walls().scaled(config.scale);
-    let (ring_radius_m, stop_ticks) = (ruler.ring_radius(), config.stop_ticks());
-    let options = MetricsOptions { walls: &walls, ring_radius_m, stop_ticks: &stop_ticks };
-    let metrics = Metrics::of(&trace, &options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
-    Simulation { trace, metrics, ring_radius_m, blob: blob.identity(), number, config }
+/// What a [`meter`] of a run borrows.
+pub struct Marks {
+    walls: Walls,
+    stop_ticks: Vec<Option<u64>>,
+    disturbances: Vec<u64>,
 }
 
-/// The most memory that the record of a run may take, bytes. To write it as text and as bytes takes four times as much more,
-/// and to simulate it about a minute.
-const MOST_RECORD: f64 = 4e8;
-/// What a robot and a target take in the record of a tick, bytes: 12 positions, headings and wheels a robot, and counts.
-const RECORD_OF_ROBOT: f64 = 24.0;
+impl Marks {
+    /// Of a run with this configuration.
+    pub fn of(scenario: &Scenario, config: &SwarmConfig) -> Self {
+        Marks {
+            walls: scenario.walls().scaled(config.scale),
+            stop_ticks: config.stop_ticks(),
+            disturbances: config.disturbances(),
+        }
+    }
+}
 
-/// Whether the record of a whole run fits into memory: a slow target makes a long run, of which every tick is kept.
+/// Measures a run, wherever its robots drive: those of another simulator are measured with the same ruler.
+pub fn meter<'a>(
+    ruler: &'a PatternRuler<'_>,
+    marks: &'a Marks,
+    ticks_per_second: u16,
+) -> Meter<'a, impl FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> {
+    let options = MetricsOptions {
+        walls: &marks.walls,
+        ring_radius_m: ruler.ring_radius(),
+        ticks_per_second,
+        disturbances: &marks.disturbances,
+        stop_ticks: &marks.stop_ticks,
+    };
+    Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets))
+}
+
+/// The longest run, simulated hours; who asks for more has mistyped a speed.
+const MOST_HOURS: f64 = 1000.0;
+
+/// Whether a run ends in reasonable time: a slow target makes a long run.
 ///
 /// # Errors
 /// [`ConfigError`] that says which speed is possible.
 pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
-    let per_tick = RECORD_OF_ROBOT * (config.robots + scenario.paths().len()) as f64;
-    let most_seconds = MOST_RECORD / per_tick / f64::from(TICKS_PER_SECOND);
+    let most_seconds = MOST_HOURS * 3600.0;
     let path = scenario.longest_path() * config.scale;
     if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
         return Ok(());
     }
-    let (hours, least) = (most_seconds / 3600.0, path / (most_seconds - config.settle_s));
     // Rounded up, so that the speed that is named is possible.
-    let least = (least * 1e5).ceil() / 1e5;
+    let least = (path / (most_seconds - config.settle_s) * 1e9).ceil() / 1e9;
     Err(ConfigError {
         field: "target_speed_m_per_s",
         value: format!("{:?}", config.target_speed_m_per_s),
         expected: format!(
-            "the run would take longer than {hours:.0} simulated hours, the most of {} robots that fits into memory; at \
-             least {least} metres per second are needed",
-            config.robots
+            "the run would take longer than {MOST_HOURS:.0} simulated hours; at least {least} metres per second are needed"
         ),
     })
 }

@@ -21,5 +21,6 @@ class Arrays:
         cos_sin = shaped("headings_q14", "<i2", robots, 2).astype(float)
         self.headings: npt.NDArray[np.float64] = np.arctan2(cos_sin[..., 1], cos_sin[..., 0])
         self.wheels: npt.NDArray[np.int16] = shaped("wheels", "<i2", robots, 2)
-        self.contacts: npt.NDArray[np.uint16] = shaped("contacts", "<u2", 4)
+        self.contacts: npt.NDArray[np.uint32] = shaped("contacts", "<u4", 4)
+        self.times: npt.NDArray[np.float64] = np.arange(flat["frames"]) * flat["ticks_per_frame"] / flat["ticks_per_second"]
         self.header = flat

@@ -27,7 +27,7 @@ class Simulation:
         ring_radius: radius of the model's ring around a lone target in free space, metres.
         radial_error_share: median radial error as a share of it; None if the swarm never formed.
         summary: everything that `grn simulate --json` prints.
-        ticks_per_second: moments per second of all arrays; the first moment is the start.
+        times: of each moment, seconds from the start; every tick, or of a long run every second, fourth, ….
         positions: moments x robots x 2, metres.
         headings: moments x robots, radians, anticlockwise from east.
         wheels: moments x robots x 2 (left, right), the commands that led there, motor steps per second.
@@ -44,17 +44,12 @@ class Simulation:
         self.ring_radius: float = self.summary["ring_radius_m"]
         self.radial_error_share: Optional[float] = self.summary["radial_error_share"]
         arrays = Arrays(run.arrays())
-        self.ticks_per_second: int = arrays.header["ticks_per_second"]
+        self.times: Floats = arrays.times
         self.positions: Floats = arrays.positions
         self.headings: Floats = arrays.headings
         self.wheels: npt.NDArray[np.int16] = arrays.wheels
         self.targets: Floats = arrays.targets
-        self.contacts: npt.NDArray[np.uint16] = arrays.contacts
-
-    @property
-    def times(self) -> Floats:
-        """The time of each moment, seconds from the start."""
-        return np.arange(len(self.positions)) / self.ticks_per_second
+        self.contacts: npt.NDArray[np.uint32] = arrays.contacts
 
     def save_trace(self, path: Union[str, PathLike[str]]) -> None:
         """Writes the run to a file that `read_trace` reads."""
@@ -130,7 +125,7 @@ def measure(
             scale=scale,
             positions_um=robots.tobytes(),
             targets_um=places.tobytes(),
-            contacts=touched.astype("<u2").tobytes(),
+            contacts=touched.astype("<u4").tobytes(),
             robots=robots.shape[1],
             targets=places.shape[1],
             ticks_per_second=ticks_per_second,

@@ -60,7 +60,7 @@ def read_trace(path: Union[str, PathLike[str]]) -> pd.DataFrame:
 
     def lines(kind: str, places: Any, **columns: Any) -> Any:
         moments, count, _ = places.shape
-        ticks = np.repeat(np.arange(moments), count)
+        ticks = np.repeat(np.arange(moments) * header["ticks_per_frame"], count)
         flat = {name: values.reshape(-1) for name, values in columns.items()}
         head = {"tick": ticks, "time": ticks / header["ticks_per_second"], "kind": kind}
         at = {"index": np.tile(np.arange(count), moments), "x": places[..., 0].reshape(-1), "y": places[..., 1].reshape(-1)}

@@ -196,10 +196,11 @@ impl Order {
         if feasible {
             let watch =
                 |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-            let simulation = simulation::simulate(&knee, scenario, config, NumberType::F32, watch)?;
+            let mut recorder = record::recorder(scenario, &config);
+            let simulation = simulation::simulate(&knee, scenario, config, NumberType::F32, &mut recorder, watch)?;
             let simulation = simulation.ok_or(Ended::Stopped)?;
             works = simulation.verdict().works();
-            let (recorded, not_drawn) = record::contents(&simulation, scenario, &knee);
+            let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), scenario, &knee);
             notices.extend(not_drawn);
             contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
         }

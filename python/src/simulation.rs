@@ -2,15 +2,16 @@
 
 use crate::blob::GivenBlob;
 use crate::errors::{about, failed, refused};
-use crate::recorded::{Run, trace_of};
+use crate::recorded::{Run, replay};
 use crate::robot::number_type;
 use crate::scenario::GivenScenario;
 use firmware_sim::config::SwarmConfig;
-use firmware_sim::trace::TraceHeader;
+use firmware_sim::trace::{Recorder, TraceHeader};
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use host_evolver::files;
-use host_evolver::simulation::{self, PatternRuler, check_length, usual_config};
+use host_evolver::record;
+use host_evolver::simulation::{self, Marks, PatternRuler, Simulation, check_length, meter, usual_config};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 
@@ -32,18 +33,21 @@ pub fn simulate(
     let config = SwarmConfig { seed, target_speed_m_per_s: speed, ..usual_config(blob.scale, robots) };
     check_length(&scenario, &config).map_err(|error| failed(&error))?;
     let number = number_type(dtype)?;
+    let mut recorder = record::recorder(&scenario, &config);
     let mut raised = None;
     let found = py.detach(|| {
-        simulation::simulate(&blob, &scenario, config, number, |_| match Python::attach(|py| py.check_signals()) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                raised = Some(error);
-                ControlFlow::Break(())
+        simulation::simulate(&blob, &scenario, config, number, &mut recorder, |_| {
+            match Python::attach(|py| py.check_signals()) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    raised = Some(error);
+                    ControlFlow::Break(())
+                }
             }
         })
     });
     match (found.map_err(|error| failed(&error))?, raised) {
-        (Some(simulation), None) => Ok(Run { simulation }),
+        (Some(simulation), None) => Ok(Run { simulation, trace: recorder.into_trace(), scenario }),
         (_, Some(error)) => Err(error),
         (None, None) => Err(refused("interrupted")),
     }
@@ -74,19 +78,14 @@ pub fn measure(
 ) -> PyResult<Run> {
     let (blob, scenario) = (scaled(blob.get()?, scale)?, scenario.get()?);
     let config = usual_config(blob.scale, robots.into());
-    let header = TraceHeader {
-        scenario: scenario.name().to_owned(),
-        seed: config.seed,
-        scale: config.scale,
-        settle_s: config.settle_s,
-        target_speed_m_per_s: config.target_speed_m_per_s,
-        ticks_per_second,
-        robots,
-        mothers: config.mothers as u16,
-        targets,
-    };
-    let trace = trace_of(header, positions_um, targets_um, contacts)?;
-    let ruler = PatternRuler::new(&blob, &scenario).map_err(|error| failed(&error))?;
-    let simulation = py.detach(|| simulation::measured(&blob, &ruler, trace, config, NumberType::F32));
-    Ok(Run { simulation })
+    let header = TraceHeader { ticks_per_second, robots, targets, ..TraceHeader::of(&scenario, &config) };
+    let world = scenario.clone();
+    let ruler = PatternRuler::new(&blob, &world).map_err(|error| failed(&error))?;
+    let marks = Marks::of(&scenario, &config);
+    let mut meter = meter(&ruler, &marks, ticks_per_second);
+    let mut recorder = Recorder::new(header.clone(), usize::MAX);
+    py.detach(|| replay(&header, positions_um, targets_um, contacts, &mut (&mut meter, &mut recorder)))?;
+    let (metrics, ring_radius_m) = (meter.metrics(), ruler.ring_radius());
+    let simulation = Simulation { metrics, ring_radius_m, blob: blob.identity(), number: NumberType::F32, config };
+    Ok(Run { simulation, trace: recorder.into_trace(), scenario })
 }

@@ -34,7 +34,7 @@ fn bar(seed: u64) -> SwarmConfig {
 fn runs(model: &str, number: NumberType, scenario: &Scenario, configs: &[SwarmConfig]) -> Vec<Simulation> {
     let run = |config: &SwarmConfig| {
         let blob = deploy::blob(network(model), &scenario.morphogen(), config.scale as f32);
-        simulate(&blob, scenario, config.clone(), number, |_| ControlFlow::Continue(())).unwrap().unwrap()
+        simulate(&blob, scenario, config.clone(), number, &mut (), |_| ControlFlow::Continue(())).unwrap().unwrap()
     };
     let half = configs.len().div_ceil(2);
     thread::scope(|scope| {
@@ -46,7 +46,7 @@ fn runs(model: &str, number: NumberType, scenario: &Scenario, configs: &[SwarmCo
 
 fn assert_bar(name: &str, runs: &[Simulation]) {
     for run in runs {
-        let seed = run.trace.header().seed;
+        let seed = run.config.seed;
         assert!(run.verdict().works(), "{name}, seed {seed}: {:?}, {:?}", run.verdict(), run.metrics);
     }
 }

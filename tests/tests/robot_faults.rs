@@ -4,7 +4,8 @@
 use firmware_sim::body::Pose;
 use firmware_sim::brain::{Brain, BrainError};
 use firmware_sim::radio::RadioConfig;
-use firmware_sim::{Scenario, Stop, Swarm, SwarmConfig};
+use firmware_sim::trace::TraceHeader;
+use firmware_sim::{Recorder, Scenario, Stop, Swarm, SwarmConfig, Trace};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
 use grn_core::robot::{Command, Controller, Message, Percept};
@@ -35,12 +36,18 @@ impl<S: Scalar> Brain for OnRadio<S> {
     }
 }
 
+fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
+    Recorder::new(TraceHeader::of(scenario, config), usize::MAX)
+}
+
 /// Twelve robots with a shipped model.
-fn simulation(model: &str, world: &str, config: SwarmConfig) -> Simulation {
+fn simulation(model: &str, world: &str, config: SwarmConfig) -> (Simulation, Trace) {
     let scenario = Scenario::load(repository(&format!("scenarios/{world}.toml"))).unwrap();
     let blob = Blob::<DEFAULT_GENES>::decode(&Shipped::named(model).bytes).unwrap();
     let config = SwarmConfig { robots: 12, target_speed_m_per_s: 0.03, ..config };
-    simulate(&blob, &scenario, config, NumberType::F32, |_| ControlFlow::Continue(())).unwrap().unwrap()
+    let mut recorder = recorder(&scenario, &config);
+    let run = simulate(&blob, &scenario, config, NumberType::F32, &mut recorder, |_| ControlFlow::Continue(()));
+    (run.unwrap().unwrap(), recorder.into_trace())
 }
 
 /// The bytes of half a minute of twelve robots in the channel.
@@ -50,9 +57,10 @@ fn trace_bytes<S: Scalar>(loopback: bool) -> Vec<u8> {
     let config = SwarmConfig { robots: 12, ..SwarmConfig::default() };
     let brain =
         |robot: usize| OnRadio { controller: Controller::<S>::new(&blob, robot as u8).unwrap(), loopback, sent: None };
+    let mut recorder = recorder(&scenario, &config);
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
-    (0..30 * 32).for_each(|_| swarm.step().unwrap());
-    swarm.trace().encode()
+    swarm.run(30 * 32, &mut recorder, |_| ControlFlow::Continue(())).unwrap();
+    recorder.into_trace().encode()
 }
 
 #[test]
@@ -63,8 +71,8 @@ fn a_robot_that_hears_its_own_broadcast_drives_as_if_it_did_not() {
 
 #[test]
 fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
-    let run = simulation("nand-xnor", "compound-channel", SwarmConfig { seed: 4, ..SwarmConfig::default() });
-    let frame = run.trace.frames().last().unwrap();
+    let (run, trace) = simulation("nand-xnor", "compound-channel", SwarmConfig { seed: 4, ..SwarmConfig::default() });
+    let frame = trace.frames().last().unwrap();
     let away = frame.robots.iter().filter(|robot| {
         let offset = [0, 1].map(|axis| f64::from(robot.position_um[axis] - frame.targets_um[0][axis]) * 1e-6);
         offset.map(|metres| metres * metres).iter().sum::<f64>().sqrt() > 2.0 * run.ring_radius_m
@@ -78,7 +86,7 @@ fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
 #[test]
 fn a_swarm_that_runs_into_itself_again_and_again_does_not_work() {
     let radio = RadioConfig { loss: 0.95, ..RadioConfig::default() };
-    let deaf = simulation("nand-xnor", "channel", SwarmConfig { radio, ..SwarmConfig::default() });
+    let (deaf, _) = simulation("nand-xnor", "channel", SwarmConfig { radio, ..SwarmConfig::default() });
     let verdict = deaf.verdict();
     assert!(deaf.metrics.peer_contacts > 12 && !verdict.clear_of_peers && !verdict.works(), "{:?}", deaf.metrics);
     assert!(verdict.encircled && verdict.accurate, "nothing else is wrong: {:?}", deaf.metrics);
@@ -112,7 +120,7 @@ fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
                 stops: stops(seed as usize),
                 ..SwarmConfig::default()
             };
-            let run = simulate(&blob(model), &channel(), config, number, |_| ControlFlow::Continue(()));
+            let run = simulate(&blob(model), &channel(), config, number, &mut (), |_| ControlFlow::Continue(()));
             let metrics = run.unwrap().unwrap().metrics;
             let away = (metrics.lost_robots, metrics.strayed_robots, metrics.wall_contacts);
             assert_eq!(away, (0, 0, 0), "{model}, {number}, seed {seed}: {metrics:?}");
@@ -158,7 +166,7 @@ fn left_behind_a_box<S: Scalar>(model: &str, seed: u64) -> usize {
     let config = SwarmConfig { robots: 12, seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() };
     let brain = |robot: usize| WallBlind(Controller::<S>::new(&blob, robot as u8).unwrap());
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
-    swarm.run(swarm.arrival_tick(), |_| ControlFlow::Continue(())).unwrap();
+    swarm.run(swarm.arrival_tick(), &mut (), |_| ControlFlow::Continue(())).unwrap();
     let ring_radius = PatternRuler::new(&blob, &scenario).unwrap().ring_radius();
     let away = |pose: &&Pose| (pose.position - swarm.targets()[0]).length() > 2.0 * ring_radius;
     swarm.poses().iter().filter(away).count()

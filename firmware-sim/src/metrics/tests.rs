@@ -1,6 +1,7 @@
 use super::*;
 use crate::geometry::{Polygon, convex_hull, point_in_polygon};
 use crate::random::{Component, Stream};
+use crate::trace::Trace;
 use crate::trace::tests::trace_of;
 use grn_core::geometry::Vector;
 use std::sync::LazyLock;
@@ -16,13 +17,29 @@ fn around(bearings: &[f64], distance: f64) -> Vec<(f64, f64)> {
 
 fn gap_deg(bearings: &[f64]) -> f64 {
     let robots = around(bearings, 0.5).into_iter().map(|(x, y)| Vector::new(x, y));
-    largest_gap(Vector::new(1.0, 2.0), robots, &mut Vec::new()).to_degrees()
+    largest_gap(Vector::new(1.0, 2.0), robots).to_degrees()
+}
+
+fn largest_gap(target: Point<f64>, robots: impl IntoIterator<Item = Point<f64>>) -> f64 {
+    let mut bearings = Bearings::default();
+    bearings.take(target, robots);
+    bearings.largest_gap()
+}
+
+fn measured(
+    trace: &Trace,
+    options: &MetricsOptions<'_>,
+    distance: impl FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>,
+) -> Metrics {
+    let mut meter = Meter::new(options.clone(), distance);
+    trace.frames().for_each(|frame| meter.observe(&frame));
+    meter.metrics()
 }
 
 /// Without walls or stops, around a ring of half a metre.
 fn options<'a>() -> MetricsOptions<'a> {
     static NO_WALLS: LazyLock<Walls> = LazyLock::new(Walls::default);
-    MetricsOptions { walls: &NO_WALLS, ring_radius_m: 0.5, stop_ticks: &[] }
+    MetricsOptions { walls: &NO_WALLS, ring_radius_m: 0.5, ticks_per_second: 32, disturbances: &[], stop_ticks: &[] }
 }
 
 const RING: [f64; 5] = [0.0, 72.0, 144.0, 216.0, 288.0];
@@ -35,7 +52,7 @@ fn gaps_wrap_around() {
     assert!((gap_deg(&[170.0, -170.0, 40.0, -60.0]) - 130.0).abs() < 1e-9);
     assert_eq!((gap_deg(&[]), gap_deg(&[33.0])), (360.0, 360.0));
     let at_target = [Vector::new(1.0, 2.0); 4];
-    assert_eq!(largest_gap(Vector::new(1.0, 2.0), at_target, &mut Vec::new()), TAU);
+    assert_eq!(largest_gap(Vector::new(1.0, 2.0), at_target), TAU);
 }
 
 #[test]
@@ -45,10 +62,10 @@ fn exactly_ninety_degrees_does_not_encircle() {
         [[(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)], [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)]]
     {
         let mut robots: Vec<Point<f64>> = corners.iter().map(|&(x, y)| Vector::new(x, y)).collect();
-        assert!(!encircles(largest_gap(Vector::ZERO, robots.clone(), &mut Vec::new())));
+        assert!(!encircles(largest_gap(Vector::ZERO, robots.clone())));
         // One more robot divides one of the four gaps; the others stay.
         robots.push(Vector::new(corners[0].0 + 0.3, corners[0].1 + 0.3));
-        assert!(!encircles(largest_gap(Vector::ZERO, robots, &mut Vec::new())));
+        assert!(!encircles(largest_gap(Vector::ZERO, robots)));
     }
     assert!(encircles(gap_deg(&[0.0, 89.9999, 170.0, 250.0, 310.0]).to_radians()));
     assert!(!encircles(gap_deg(&[0.0, 90.0001, 170.0, 250.0, 310.0]).to_radians()));
@@ -61,7 +78,7 @@ fn a_gap_below_180_is_the_same_as_inside_the_hull() {
     for _ in 0..2000 {
         let robots: Vec<Point<f64>> = (0..5).map(|_| Vector::new(stream.symmetric(), stream.symmetric())).collect();
         let target = Vector::new(stream.symmetric(), stream.symmetric()) * 0.5;
-        let gap = largest_gap(target, robots.clone(), &mut Vec::new());
+        let gap = largest_gap(target, robots.clone());
         let held = point_in_polygon(&convex_hull(&robots), target);
         assert_eq!(held, gap < PI, "{robots:?} {target:?}");
         if held { inside += 1 } else { outside += 1 }
@@ -77,7 +94,7 @@ fn forming_takes_two_unbroken_seconds() {
         .into_iter()
         .flat_map(|(count, open)| (0..count).map(move |_| ring(open)))
         .collect();
-    let metrics = Metrics::of(&trace_of(&frames), &options(), |_, _| Some(0.02));
+    let metrics = measured(&trace_of(&frames), &options(), |_, _| Some(0.02));
     assert_eq!(metrics.formed_at_s, Some(75.0 / 32.0));
     assert_eq!(metrics.encircled_share, Some(180.0 / 200.0));
     assert_eq!(metrics.encircled_share_by_target, Some(vec![180.0 / 200.0]));
@@ -89,7 +106,7 @@ fn forming_takes_two_unbroken_seconds() {
     assert_eq!(metrics.min_wall_clearance_m, None);
     // 64 ticks are 65 frames: one frame fewer does not form.
     let frames = |n| vec![ring(false); n];
-    let formed = |n| Metrics::of(&trace_of(&frames(n)), &options(), |_, _| None).formed_at_s;
+    let formed = |n| measured(&trace_of(&frames(n)), &options(), |_, _| None).formed_at_s;
     assert_eq!((formed(64), formed(65)), (None, Some(0.0)));
 }
 
@@ -100,7 +117,7 @@ fn every_target_counts_by_itself() {
     let both = (vec![(1.0, 2.0), (4.0, 2.0)], robots.clone());
     let lost = (vec![(1.0, 2.0), (4.0, 3.0)], robots);
     let frames: Vec<_> = (0..160).map(|i| if i < 120 { both.clone() } else { lost.clone() }).collect();
-    let metrics = Metrics::of(&trace_of(&frames), &options(), |_, _| None);
+    let metrics = measured(&trace_of(&frames), &options(), |_, _| None);
     assert_eq!(metrics.encircled_share_by_target, Some(vec![1.0, 0.75]));
     assert_eq!(metrics.encircled_share, Some(0.75));
     assert_eq!((metrics.radial_error_median_m, metrics.radial_error_unknown_share), (None, Some(1.0)));
@@ -111,11 +128,11 @@ fn an_unknown_distance_is_longer_than_any_other() {
     let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
     let west_of = |limit: f64| move |p: Point<f64>, _: &[Point<f64>]| (p.x < limit).then_some(0.01);
     // Four of five robots are west of 1.2 m, two west of 1 m.
-    let most = Metrics::of(&trace_of(&frames), &options(), west_of(1.2));
+    let most = measured(&trace_of(&frames), &options(), west_of(1.2));
     assert!((most.radial_error_median_m.unwrap() - 0.01).abs() < 1e-4);
     assert_eq!((most.radial_error_p95_m, most.lost_robots, most.strayed_robots), (None, 0, 0));
     assert!((most.radial_error_unknown_share.unwrap() - 0.2).abs() < 1e-9);
-    let few = Metrics::of(&trace_of(&frames), &options(), west_of(1.0));
+    let few = measured(&trace_of(&frames), &options(), west_of(1.0));
     assert_eq!(few.radial_error_median_m, None);
 }
 
@@ -135,9 +152,9 @@ fn robots_are_lost_far_away_and_stray_for_a_while() {
         .collect();
     let distance = |p: Point<f64>, targets: &[Point<f64>]| Some(((p - targets[0]).length() - 0.5).abs());
     let stop_ticks = [None, None, Some(5)];
-    let metrics = Metrics::of(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, distance);
+    let metrics = measured(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, distance);
     assert_eq!((metrics.lost_robots, metrics.strayed_robots), (1, 1));
-    let metrics = Metrics::of(&trace_of(&frames), &options(), distance);
+    let metrics = measured(&trace_of(&frames), &options(), distance);
     assert_eq!((metrics.lost_robots, metrics.strayed_robots), (2, 1), "a robot that works counts");
 }
 
@@ -145,9 +162,36 @@ fn robots_are_lost_far_away_and_stray_for_a_while() {
 fn a_broken_robot_does_not_encircle() {
     let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
     let stop_ticks = [None, Some(100)];
-    let metrics =
-        Metrics::of(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, |_, _| None);
+    let metrics = measured(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, |_, _| None);
     assert_eq!((metrics.formed_at_s, metrics.encircled_share), (Some(0.0), Some(0.5)));
+}
+
+#[test]
+fn a_swarm_recovers_from_one_disturbance_and_not_from_the_next() {
+    // Closed for 3 s, broken by the first disturbance for 1 s, closed for 4 s but for 0.5 s, open after the second.
+    let closed = |tick| tick < 96 || ((128..256).contains(&tick) && !(200..216).contains(&tick));
+    let frames: Vec<_> =
+        (0..300).map(|tick| (vec![(1.0, 2.0)], around(if closed(tick) { &RING } else { &OPEN }, 0.5))).collect();
+    let disturbed =
+        |disturbances| measured(&trace_of(&frames), &MetricsOptions { disturbances, ..options() }, |_, _| None);
+    let metrics = disturbed(&[96, 260, 1000]);
+    let first = Recovery { disturbed_at_s: 3.0, reformed_at_s: Some(4.0), encircled_share: Some(112.0 / 132.0) };
+    let second = Recovery { disturbed_at_s: 260.0 / 32.0, reformed_at_s: None, encircled_share: None };
+    assert_eq!(metrics.recoveries, [first, second]);
+    assert_eq!(metrics.formed_at_s, Some(0.0));
+    assert_eq!(metrics.recoveries, disturbed(&[96, 260]).recoveries);
+    assert_eq!(disturbed(&[]).recoveries, []);
+}
+
+#[test]
+fn distances_are_measured_some_times_a_second_of_every_robot() {
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 129];
+    let mut calls = 0;
+    measured(&trace_of(&frames), &options(), |_, _| {
+        calls += 1;
+        None
+    });
+    assert_eq!(calls, RING.len() * (4 * usize::from(MEASUREMENTS_PER_SECOND) + 1));
 }
 
 #[test]
@@ -160,14 +204,14 @@ fn radial_error_clearance_and_evenness() {
         let offset = p - targets[0];
         Some((offset.length() - 0.49).abs() + if offset.y > 0.4 { 0.2 } else { 0.0 })
     };
-    let metrics = Metrics::of(&trace_of(&frames), &MetricsOptions { walls: &walls, ..options() }, distance);
+    let metrics = measured(&trace_of(&frames), &MetricsOptions { walls: &walls, ..options() }, distance);
     assert!((metrics.radial_error_median_m.unwrap() - 0.01).abs() < 2e-4);
     assert!((metrics.radial_error_p95_m.unwrap() - 0.21).abs() < 2e-4);
     assert_eq!(metrics.radial_error_unknown_share, Some(0.0));
     assert!((metrics.min_wall_clearance_m.unwrap() - 0.3).abs() < 1e-9);
     assert!((metrics.spacing_evenness.unwrap() - 1.0).abs() < 1e-9);
     let uneven = vec![(vec![(1.0, 2.0)], around(&[0.0, 10.0, 85.0, 160.0, 235.0, 310.0], 0.5)); 70];
-    let metrics = Metrics::of(&trace_of(&uneven), &options(), |_, _| None);
+    let metrics = measured(&trace_of(&uneven), &options(), |_, _| None);
     let gaps = [10.0, 75.0, 75.0, 75.0, 75.0, 50.0].map(|gap: f64| gap / 360.0);
     let expected = -gaps.iter().map(|g| g * libm::log(*g)).sum::<f64>() / libm::log(6.0);
     assert!((metrics.spacing_evenness.unwrap() - expected).abs() < 1e-5);

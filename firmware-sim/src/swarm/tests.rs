@@ -2,6 +2,7 @@ use super::*;
 use crate::geometry::length_squared;
 use crate::radio::RadioConfig;
 use crate::sensors::Noise;
+use crate::trace::{Recorder, Trace, TraceHeader};
 use grn_core::blob::{Blob, FieldParameters, Gains};
 use grn_core::dynamics::Step;
 use grn_core::field::Kernel;
@@ -49,6 +50,17 @@ impl<S: Scalar> Brain for Real<S> {
     }
 }
 
+fn recorder<B: Brain>(swarm: &Swarm<B>) -> Recorder {
+    Recorder::new(TraceHeader::of(swarm.world(), swarm.config()), usize::MAX)
+}
+
+/// Every tick up to this one.
+fn recorded<B: Brain>(swarm: &mut Swarm<B>, end: u64) -> Trace {
+    let mut recorder = recorder(swarm);
+    assert_eq!(swarm.run(end, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    recorder.into_trace()
+}
+
 /// The bytes of 10 s of 12 robots under the real controller, with every noise on.
 fn real_bytes<S: Scalar>() -> Vec<u8> {
     let gene = |motif, inputs: &[Source], theta| Gene { motif, inputs: inputs.iter().copied().collect(), theta };
@@ -66,8 +78,7 @@ fn real_bytes<S: Scalar>() -> Vec<u8> {
     let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
     let controller = |robot| Real(Controller::<S>::new(&blob, robot as u8).unwrap());
     let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
-    assert_eq!(swarm.run(320, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    swarm.trace().encode()
+    recorded(&mut swarm, 320).encode()
 }
 
 #[test]
@@ -92,30 +103,29 @@ impl Brain for Straight {
     }
 }
 
-fn run(config: SwarmConfig, ticks: u64) -> Swarm<Wanderer> {
-    let mut swarm = Swarm::new(&channel(), config, wanderer).unwrap();
-    assert_eq!(swarm.run(ticks, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    swarm
-}
-
 #[test]
 fn equal_seeds_give_equal_bytes() {
     let config = SwarmConfig { robots: 40, variation: 0.02, ..SwarmConfig::default() };
-    let bytes = |seed| run(SwarmConfig { seed, ..config.clone() }, 400).trace().encode();
+    let bytes = |seed| {
+        let config = SwarmConfig { seed, ..config.clone() };
+        recorded(&mut Swarm::new(&channel(), config, wanderer).unwrap(), 400).encode()
+    };
     assert_eq!(bytes(1), bytes(1));
     assert_ne!(bytes(1), bytes(2));
     // In two runs, through a box, the same.
     let mut boxed: Swarm<Box<dyn Brain>> =
         Swarm::new(&channel(), config.clone(), |robot| Box::new(wanderer(robot)) as _).unwrap();
-    assert_eq!(boxed.run(150, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    assert_eq!(boxed.run(400, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    assert_eq!(boxed.trace().encode(), bytes(1));
+    let mut recorder = recorder(&boxed);
+    assert_eq!(boxed.run(150, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(boxed.run(400, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(recorder.into_trace().encode(), bytes(1));
 }
 
 #[test]
 fn a_broadcast_is_heard_in_the_next_tick() {
     let config = SwarmConfig { robots: 5, radio: RadioConfig { range_m: 10.0, loss: 0.0 }, ..SwarmConfig::default() };
-    let swarm = run(config, 10);
+    let mut swarm = Swarm::new(&channel(), config, wanderer).unwrap();
+    (0..10).for_each(|_| swarm.step().unwrap());
     for (robot, brain) in swarm.brains().iter().enumerate() {
         assert_eq!(brain.heard.len(), 9 * 4);
         assert!(
@@ -165,8 +175,11 @@ fn bodies_never_enter_walls_or_stay_inside_each_other() {
     let config = SwarmConfig { robots: 20, scale: 1.0, ..SwarmConfig::default() };
     let mut swarm = Swarm::new(&scenario, config, |_| Straight).unwrap();
     let mut closest: f64 = 1.0;
+    let (mut wall_events, mut peer_events) = (0, 0);
     for _ in 0..2000 {
         swarm.step().unwrap();
+        wall_events += swarm.frame().contacts.wall_events;
+        peer_events += swarm.frame().contacts.peer_events;
         for (i, pose) in swarm.poses().iter().enumerate() {
             assert!(swarm.walls().signed_distance(pose.position) >= BODY_RADIUS - 1e-9, "{pose:?}");
             for other in &swarm.poses()[..i] {
@@ -175,11 +188,8 @@ fn bodies_never_enter_walls_or_stay_inside_each_other() {
         }
     }
     assert!(closest > 1.6 * BODY_RADIUS, "{closest}");
-    let contacts = swarm.trace().frames().map(|f| f.contacts);
-    let (wall_events, peer_events) =
-        contacts.fold((0, 0), |sum, c| (sum.0 + u32::from(c.wall_events), sum.1 + u32::from(c.peer_events)));
     assert!(wall_events >= 20 && peer_events >= 10, "{wall_events} {peer_events}");
-    assert_eq!(swarm.trace().frames().last().unwrap().contacts.walls, 20, "they press on");
+    assert_eq!(swarm.frame().contacts.walls, 20, "they press on");
 }
 
 #[test]
@@ -197,7 +207,7 @@ fn targets_rest_and_then_arrive_on_time() {
         before = swarm.targets()[0];
     }
     assert!((before.x - 17.0 * 0.25).abs() < 1e-12);
-    assert_eq!(swarm.trace().len() as u64, swarm.arrival_tick() + 1);
+    assert_eq!(swarm.frame().targets_um, [[17_000_000 / 4, 10_000_000 / 4]]);
 }
 
 #[test]
@@ -234,12 +244,13 @@ fn a_failing_brain_is_named_and_a_callback_may_stop() {
     }
     let mut swarm = Swarm::new(&channel(), SwarmConfig::default(), |robot| Failing(robot, 0)).unwrap();
     let mut calls = Vec::new();
-    let stopped = swarm.run(100, |progress| {
+    let mut recorder = recorder(&swarm);
+    let stopped = swarm.run(100, &mut recorder, |progress| {
         calls.push(progress.tick);
         if progress.tick == 32 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert_eq!((stopped, calls), (Ok(Outcome::Interrupted), vec![0, 32]));
-    let error = swarm.run(100, |_| ControlFlow::Continue(())).unwrap_err();
+    let error = swarm.run(100, &mut recorder, |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(error.to_string(), "robot 3 gave no command in tick 49: link closed");
-    assert_eq!(swarm.trace().len(), 50);
+    assert_eq!((recorder.trace().len(), swarm.frame().tick), (50, 49));
 }

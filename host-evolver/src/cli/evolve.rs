@@ -99,8 +99,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Ok(Answer::No);
     }
     let robots = config.robots;
-    let simulation = watched(&run.path("knee.grn"), &knee, &scenario, config, NumberType::F32, &stop)?;
-    let (recorded, not_drawn) = record::contents(&simulation, &scenario, &knee);
+    let mut recorder = record::recorder(&scenario, &config);
+    let knee_path = run.path("knee.grn");
+    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop)?;
+    let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &knee);
     not_drawn.iter().for_each(output::notice);
     contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
     run.finish(&contents)?;

@@ -12,6 +12,7 @@ use crate::simulation::{
 use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
+use firmware_sim::trace::Observer;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
@@ -51,8 +52,7 @@ pub struct Arguments {
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale)]
     scale: Option<f32>,
-    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs, and every
-    /// tick is kept: a run of 12 robots may take 11 simulated hours.
+    /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
     #[arg(long, default_value_t = DEFAULT_SPEED)]
     speed: f64,
     /// Number type the robots compute in.
@@ -67,7 +67,8 @@ pub struct Arguments {
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg.
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg. A trace has every tick, or of a run that is too long for
+    /// the memory every second, fourth, ….
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -100,14 +101,19 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
-    let simulation = simulated(arguments, &blob, &scenario, config, &stop)?;
-    if let Some(lock) = &lock {
-        let (contents, not_drawn) = record::contents(&simulation, &scenario, &blob);
-        not_drawn.iter().for_each(output::notice);
-        keep(lock.folder(), &contents)?;
-    }
+    let simulation = match &lock {
+        Some(lock) => {
+            let mut recorder = record::recorder(&scenario, &config);
+            let simulation = simulated(arguments, &blob, &scenario, config, &mut recorder, &stop)?;
+            let (contents, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &blob);
+            not_drawn.iter().for_each(output::notice);
+            keep(lock.folder(), &contents)?;
+            simulation
+        }
+        None => simulated(arguments, &blob, &scenario, config, &mut (), &stop)?,
+    };
     if arguments.json {
-        output::product_json(&record::metrics(&simulation))?;
+        output::product_json(&record::metrics(&simulation, &scenario))?;
     } else {
         output::report(table(&simulation));
     }
@@ -119,11 +125,12 @@ fn simulated(
     blob: &Blob,
     scenario: &Scenario,
     config: SwarmConfig,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
     let number = arguments.number;
     match arguments.target {
-        Target::Native => watched(&arguments.blob, blob, scenario, config, number, stop),
+        Target::Native => watched(&arguments.blob, blob, scenario, config, number, observer, stop),
         #[cfg(unix)]
         Target::Qemu => {
             let image = arguments.image.clone().unwrap_or_else(|| {
@@ -134,7 +141,9 @@ fn simulated(
             });
             let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
             let path = &arguments.blob;
-            with_progress(path, stop, |watch| emulation::simulate(blob, scenario, config, number, &emulation, watch))
+            with_progress(path, stop, |watch| {
+                emulation::simulate(blob, scenario, config, number, &emulation, observer, watch)
+            })
         }
         #[cfg(not(unix))]
         Target::Qemu => Err(Failure::Input("--target qemu needs Unix sockets, which this system has not".into())),
@@ -168,9 +177,10 @@ pub fn watched(
     scenario: &Scenario,
     config: SwarmConfig,
     number: NumberType,
+    observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, watch))
+    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, observer, watch))
 }
 
 fn with_progress(

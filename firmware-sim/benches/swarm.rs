@@ -12,7 +12,7 @@ use grn_core::geometry::Vector;
 use grn_core::motif::Motif;
 use grn_core::network::{Gene, Network, Source};
 use grn_core::robot::message::ObstacleReport;
-use grn_core::robot::{Command, Controller, Message, Millimetres, Percept, TargetReport};
+use grn_core::robot::{Command, Controller, Fix, Message, Millimetres, Percept, TargetReport};
 use grn_core::scalar::{Q8_24, Scalar};
 use std::hint::black_box;
 use std::time::Duration;
@@ -26,7 +26,7 @@ const BROADCAST_PERIOD: u32 = 8;
 
 /// Circles the target it last heard of, turns away from what is near, and broadcasts a full message in its turn.
 struct Cheap {
-    number: u8,
+    number: u16,
     tick: u32,
     target: TargetReport,
 }
@@ -34,20 +34,21 @@ struct Cheap {
 impl Brain for Cheap {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         self.tick += 1;
-        for message in &percept.heard {
-            if let Some(report) = message.target {
+        for heard in &percept.heard {
+            if let Some(report) = heard.message.target {
                 self.target = report;
             }
         }
         if let Some(seen) = percept.targets.first() {
             self.target.position = seen.position;
         }
-        let [x, y] = percept.position.map(|um| um / 1000);
+        let Fix { position, heading, .. } = percept.fix.ok_or_else(|| BrainError::new("a tick without a fix"))?;
+        let [x, y] = position.map(|um| um / 1000);
         let to = Vector::new(
             f64::from(i32::from(self.target.position.x) - x),
             f64::from(i32::from(self.target.position.y) - y),
         );
-        let [cos, sin] = percept.heading.map(f64::from);
+        let [cos, sin] = heading.map(f64::from);
         let ahead = (cos * to.x + sin * to.y) / 16384.0;
         let aside = (cos * to.y - sin * to.x) / 16384.0;
         let near = percept.proximity.iter().filter(|&&p| p < 200).count() as i16;
@@ -57,7 +58,7 @@ impl Brain for Cheap {
         let broadcast = turned.then(|| {
             let position = Millimetres { x: x as i16, y: y as i16 };
             let report = ObstacleReport { position, age: 3 };
-            let mut obstacles = percept.heard.first().map(|m| m.obstacles.clone()).unwrap_or_default();
+            let mut obstacles = percept.heard.first().map(|h| h.message.obstacles.clone()).unwrap_or_default();
             while obstacles.push(report).is_ok() {}
             Message { sender: self.number, position, target: Some(self.target), obstacles }
         });
@@ -138,7 +139,7 @@ fn run<B: Brain>(swarm: &mut Swarm<B>) {
 fn real<S: Scalar>(scenario: &Scenario, scale: f64, recorded: Option<usize>) -> Swarm<Real<S>> {
     let blob = blob(scenario, scale);
     swarm(scenario, scale, |robot| {
-        let controller: Controller<S> = expect(Controller::new(&blob, robot as u8));
+        let controller: Controller<S> = expect(Controller::new(&blob, robot as u16));
         let recording = recorded.is_some_and(|every| robot.is_multiple_of(every));
         let record = recording.then(|| Record { start: controller.clone(), percepts: Vec::new() });
         Real { controller, tick: 0, record }
@@ -147,7 +148,7 @@ fn real<S: Scalar>(scenario: &Scenario, scale: f64, recorded: Option<usize>) -> 
 
 fn simulator(group: &mut BenchmarkGroup<'_, WallTime>, scenario: &Scenario, scale: f64) {
     let target = TargetReport { target: 0, position: Millimetres { x: 750, y: 2500 }, velocity: [0; 2], age: 0 };
-    let cheap = |robot| Cheap { number: robot as u8, tick: 0, target };
+    let cheap = |robot| Cheap { number: robot as u16, tick: 0, target };
     group.bench_function(format!("simulator/scale-{scale}"), |bencher| {
         bencher.iter_batched_ref(|| swarm(scenario, scale, cheap), run, BatchSize::LargeInput);
     });

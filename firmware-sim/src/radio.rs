@@ -5,7 +5,7 @@ use crate::random::{Component, Stream};
 use grn_core::geometry::Point;
 use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
 use grn_core::robot::percept::MAX_HEARD;
-use grn_core::robot::{Message, Millimetres, ObstacleReport, TargetReport};
+use grn_core::robot::{Heard, Message, Millimetres, ObstacleReport, TargetReport};
 use serde::{Deserialize, Serialize};
 
 /// How far the radio reaches and how much it loses.
@@ -49,7 +49,7 @@ struct Ether {
 /// A message in a form of fixed size, which is copied faster than lists of variable length.
 #[derive(Clone, Copy, Debug)]
 struct Letter {
-    sender: u8,
+    sender: u16,
     position: Millimetres,
     target: Option<TargetReport>,
     reports: usize,
@@ -127,7 +127,7 @@ impl Radio {
 
     /// What `receiver` hears at `position`: of the messages from senders in range, each lost or not
     /// by an independent draw, as many as the inbox holds, nearest first (equally near ones by number).
-    pub fn deliver(&mut self, receiver: usize, position: Point<f64>) -> heapless::Vec<Message, MAX_HEARD> {
+    pub fn deliver(&mut self, receiver: usize, position: Point<f64>) -> heapless::Vec<Heard, MAX_HEARD> {
         let mut heard = heapless::Vec::new();
         if self.sent.senders.is_empty() {
             return heard;
@@ -145,7 +145,8 @@ impl Radio {
         });
         for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
             // As many as fit were chosen.
-            let _ = heard.push(self.sent.letters[(rank & 0xff) as usize].message());
+            let message = self.sent.letters[(rank & 0xff) as usize].message();
+            let _ = heard.push(Heard { message, age_ms: 0 });
         }
         heard
     }
@@ -158,17 +159,17 @@ mod tests {
 
     fn message(sender: usize) -> Message {
         let position = Millimetres { x: sender as i16, y: 0 };
-        Message { sender: sender as u8, position, target: None, obstacles: Default::default() }
+        Message { sender: sender as u16, position, target: None, obstacles: Default::default() }
     }
 
     /// Who hears whom with robots on a line at these places (metres).
-    fn heard(config: RadioConfig, places: &[f64], receiver: usize) -> Vec<u8> {
+    fn heard(config: RadioConfig, places: &[f64], receiver: usize) -> Vec<u16> {
         let positions: Vec<Point<f64>> = places.iter().map(|&x| Vector::new(x, 0.0)).collect();
         let mut radio = Radio::new(config, 1, places.len());
         (0..places.len()).for_each(|sender| radio.send(sender, Some(&message(sender))));
         radio.tick_over();
         radio.locate(&positions);
-        radio.deliver(receiver, positions[receiver]).iter().map(|message| message.sender).collect()
+        radio.deliver(receiver, positions[receiver]).iter().map(|heard| heard.message.sender).collect()
     }
 
     #[test]
@@ -201,7 +202,7 @@ mod tests {
         let n = 20_000;
         for _ in 0..n {
             let heard = radio.deliver(0, positions[0]);
-            let has = |s: u8| heard.iter().any(|m| m.sender == s);
+            let has = |s: u16| heard.iter().any(|h| h.message.sender == s);
             one += u32::from(has(1));
             two += u32::from(has(2));
             both += u32::from(has(1) && has(2));
@@ -222,7 +223,7 @@ mod tests {
         for _ in 0..1000 {
             let heard = radio.deliver(0, positions[0]);
             assert_eq!(heard.len(), MAX_HEARD);
-            assert!(heard.windows(2).all(|pair| pair[0].sender < pair[1].sender));
+            assert!(heard.windows(2).all(|pair| pair[0].message.sender < pair[1].message.sender));
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::random::Stream;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_BEARINGS_DEG, PROXIMITY_RANGE, PROXIMITY_SENSORS};
 use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS};
-use grn_core::robot::{Millimetres, Sighting};
+use grn_core::robot::{Fix, Millimetres, Sighting};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -139,7 +139,7 @@ fn millimetres(point: Point<f64>, half_width: f64, noise: &mut Stream) -> Millim
 }
 
 /// Own position and heading as localisation gives them, in the percept's units.
-pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream) -> ([i32; 2], [i16; 2]) {
+pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream) -> Fix {
     let Pose { mut position, mut heading } = *pose;
     if noise.position_m > 0.0 {
         position = position + Vector::new(stream.triangular(), stream.triangular()) * noise.position_m;
@@ -150,7 +150,8 @@ pub fn localise(pose: &Pose, noise: &Noise, stream: &mut Stream) -> ([i32; 2], [
         let shrink = 1.0 / (1.0 + e * e).sqrt();
         heading = (heading + heading.turned_left() * e) * shrink;
     }
-    ([micrometres(position.x), micrometres(position.y)], [unit_q14(heading.x), unit_q14(heading.y)])
+    let position = [micrometres(position.x), micrometres(position.y)];
+    Fix { position, heading: [unit_q14(heading.x), unit_q14(heading.y)], age_ms: 0 }
 }
 
 /// What a robot sees with its own far sense in one tick.
@@ -292,10 +293,12 @@ mod tests {
 
     #[test]
     fn localisation_is_exact_without_noise_and_near_with_it() {
-        assert_eq!(localise(&POSE, &Noise::NONE, &mut stream()), ([1_000_000, 2_000_000], [0, 16384]));
+        let exact = Fix { position: [1_000_000, 2_000_000], heading: [0, 16384], age_ms: 0 };
+        assert_eq!(localise(&POSE, &Noise::NONE, &mut stream()), exact);
         let mut noise = stream();
         for _ in 0..1000 {
-            let (position, heading) = localise(&POSE, &Noise::default(), &mut noise);
+            let Fix { position, heading, age_ms } = localise(&POSE, &Noise::default(), &mut noise);
+            assert_eq!(age_ms, 0);
             assert!((position[0] - 1_000_000).abs() <= 2000 && heading[0].abs() <= 286);
             let [x, y] = heading.map(f64::from);
             assert!((libm::hypot(x, y) - 16384.0).abs() < 1.5);

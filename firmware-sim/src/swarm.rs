@@ -24,6 +24,7 @@ use core::ops::ControlFlow;
 use grn_core::geometry::Point;
 use grn_core::robot::Percept;
 use grn_core::robot::epuck2::{MAX_WHEEL_SPEED, TICKS_PER_SECOND};
+use grn_core::robot::percept::NOMINAL_TICK_US;
 
 /// The farthest coordinate a percept and a message can tell, metres.
 const MAX_COORDINATE: f64 = 32.767;
@@ -328,13 +329,13 @@ impl<B: Brain> Swarm<B> {
             return Ok(());
         }
         let (pose, noise, stream) = (&self.poses[robot], &self.config.noise, &mut self.noise[robot]);
-        let (position, heading) = localise(pose, noise, stream);
+        let fix = Some(localise(pose, noise, stream));
         let proximity = ProximityRing::quantised(&self.free[robot], noise.proximity_m, stream);
         let range = PERCEPTION_RANGE * self.config.scale;
         let look = |sense: &mut FarSense| sense.look(pose.position, range, &self.targets, &self.samples, noise, stream);
         let Seen { targets, obstacles } = self.far_senses.get_mut(robot).map(look).unwrap_or_default();
         let heard = self.radio.deliver(robot, pose.position);
-        let percept = Percept { position, heading, proximity, targets, obstacles, heard };
+        let percept = Percept { fix, elapsed_us: NOMINAL_TICK_US, proximity, targets, obstacles, heard };
         let fault = |source| StepError { robot, tick: self.tick, source };
         let command = self.brains[robot].tick(&percept).map_err(fault)?;
         self.wheels[robot] = [command.left, command.right].map(|s| s.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));

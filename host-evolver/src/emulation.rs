@@ -74,7 +74,7 @@ impl Emulation {
             return Err(fault(&format!("{image} computes in {found}, not {number}; choose another with --image")));
         }
         let bytes = blob_bytes(blob).map_err(|error| fault(&error))?;
-        let brain = RemoteBrain::start(client, &bytes, blob.identity(), robot as u8).map_err(|error| fault(&error))?;
+        let brain = RemoteBrain::start(client, &bytes, blob.identity(), robot as u16).map_err(|error| fault(&error))?;
         Ok(Box::new(brain))
     }
 }

@@ -163,7 +163,7 @@ pub fn simulate(
 /// The controllers of a swarm in this process, by robot number.
 pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Controller<S>, SimulationError> {
     let fresh = Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?;
-    Ok(move |robot: usize| fresh.clone().on_robot(robot as u8))
+    Ok(move |robot: usize| fresh.clone().on_robot(robot as u16))
 }
 
 /// [`simulate`] with any brains.

@@ -14,9 +14,9 @@ use grn_core::robot::link::message::{
 };
 use grn_core::robot::link::refusal::{BlobFault, PerceptFault};
 use grn_core::robot::link::server::TRIAL_TICKS;
-use grn_core::robot::percept::MAX_POSITION;
+use grn_core::robot::percept::{HEADING_UNIT, MAX_POSITION};
 use grn_core::robot::slots::{MAX_BLOB, Stage};
-use grn_core::robot::{Controller, Percept};
+use grn_core::robot::{Controller, Fix, Percept};
 use grn_core::scalar::NumberType;
 use grn_link::flashing::{Flashed, flash};
 use grn_link::wire::LocalRobot;
@@ -83,10 +83,10 @@ fn a_robot_behind_the_link_does_what_a_robot_in_the_process_does() -> Outcome {
     let model = Shipped::named("andn-nand-xnor");
     let blob = Blob::<32>::decode(&model.bytes)?;
     let config = || SwarmConfig { scale: 0.25, robots: 6, ..SwarmConfig::default() };
-    let mut native = Swarm::new(&scenario, config(), |robot| Controller::<f32>::new(&blob, robot as u8).unwrap())?;
+    let mut native = Swarm::new(&scenario, config(), |robot| Controller::<f32>::new(&blob, robot as u16).unwrap())?;
     let mut remote = Swarm::new(&scenario, config(), |robot| -> Box<dyn Brain> {
         let client = client(server(empty_flash(robot as u64)));
-        Box::new(RemoteBrain::start(client, &model.bytes, model.identity, robot as u8).unwrap())
+        Box::new(RemoteBrain::start(client, &model.bytes, model.identity, robot as u16).unwrap())
     })?;
     for _ in 0..300 {
         native.step()?;
@@ -120,12 +120,16 @@ fn percepts_that_no_robot_can_have_are_refused_and_are_no_tick() -> Outcome {
     let mut client = client(server(empty_flash(0)));
     flash(&mut client, &model.bytes, model.identity, true, |_| {})?;
     client.ask(&Percept::nothing())?;
-    let [mut blind, mut far] = [Percept::nothing(), Percept::nothing()];
-    blind.heading = [0, 0];
-    far.position = [MAX_POSITION + 1, 0];
-    for (percept, fault, words) in
-        [(blind, PerceptFault::Heading, "unit vector"), (far, PerceptFault::Position, "range")]
-    {
+    let fixed = |position, heading| {
+        let fix = Some(Fix { position, heading, age_ms: 0 });
+        Percept { fix, ..Percept::nothing() }
+    };
+    let hasty = Percept { elapsed_us: 31, ..Percept::nothing() };
+    for (percept, fault, words) in [
+        (fixed([0; 2], [0, 0]), PerceptFault::Heading, "unit vector"),
+        (fixed([MAX_POSITION + 1, 0], [HEADING_UNIT, 0]), PerceptFault::Position, "range"),
+        (hasty, PerceptFault::Elapsed, "microseconds"),
+    ] {
         let refusal = refusal(client.ask(&percept));
         assert_eq!(refusal, Refusal::Percept(fault));
         assert!(refusal.to_string().contains(words), "{refusal}");

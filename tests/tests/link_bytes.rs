@@ -6,7 +6,7 @@ use grn_core::robot::link::message::{
     Activate, Begin, Chunk, Commit, Confirm, Identify, Request, Reset, RollBack, Status, VERSION, decode_message,
 };
 use grn_core::robot::link::refusal::{BlobFault, LoadFault, PerceptFault};
-use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::{Command, Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 
 fn bytes(message: &impl serde::Serialize) -> Vec<u8> {
     postcard::to_slice(message, &mut [0; 600]).unwrap().to_vec()
@@ -24,7 +24,7 @@ fn frozen_messages_have_exactly_these_bytes() {
     assert_eq!(bytes(&Activate { identity }), identity);
     assert_eq!(bytes(&Confirm { identity }), identity);
     assert_eq!(bytes(&RollBack { identity }), identity);
-    assert_eq!(bytes(&Reset { robot: 5 }), [5]);
+    assert_eq!(bytes(&Reset { robot: 519 }), [135, 4]);
     let operations = [
         Identify::OPERATION,
         Status::OPERATION,
@@ -66,6 +66,7 @@ fn frozen_messages_have_exactly_these_bytes() {
         (Refusal::NoController, vec![15]),
         (Refusal::Percept(PerceptFault::Position), vec![16, 0]),
         (Refusal::Percept(PerceptFault::Heading), vec![16, 1]),
+        (Refusal::Percept(PerceptFault::Elapsed), vec![16, 2]),
         (Refusal::SequenceUsedUp, vec![17]),
     ];
     for (refusal, expected) in refusals {
@@ -76,7 +77,7 @@ fn frozen_messages_have_exactly_these_bytes() {
 
 fn message() -> Message {
     Message {
-        sender: 7,
+        sender: 519,
         position: Millimetres { x: 258, y: -259 },
         target: Some(TargetReport { target: 1, position: Millimetres { x: -2, y: 300 }, velocity: [-5, 6], age: 200 }),
         obstacles: [ObstacleReport { position: Millimetres { x: 1000, y: -1000 }, age: 3 }].into_iter().collect(),
@@ -86,12 +87,12 @@ fn message() -> Message {
 /// Every field by name and with a value of its own, so that a new field is missed here.
 fn percept() -> Percept {
     Percept {
-        position: [-1_000_000, 70_000],
-        heading: [11_585, -11_585],
+        fix: Some(Fix { position: [-1_000_000, 70_000], heading: [11_585, -11_585], age_ms: 130 }),
+        elapsed_us: 31_250,
         proximity: [0, 1, 127, 128, 500, 16_383, 16_384, u16::MAX],
         targets: [Sighting { target: 2, position: Millimetres { x: 10, y: -11 } }].into_iter().collect(),
         obstacles: [Millimetres { x: 63, y: -64 }, Millimetres { x: 64, y: -65 }].into_iter().collect(),
-        heard: [message()].into_iter().collect(),
+        heard: [Heard { message: message(), age_ms: 300 }].into_iter().collect(),
     }
 }
 
@@ -101,7 +102,7 @@ fn command() -> Command {
 
 /// Percept and command of operation 10 in each version of the protocol.
 #[rustfmt::skip]
-const TICK: [(u8, &[u8], &[u8]); 1] = [(
+const TICK: [(u8, &[u8], &[u8]); 2] = [(
     1,
     &[
         255, 136, 122, 224, 197, 8, // position
@@ -114,6 +115,20 @@ const TICK: [(u8, &[u8], &[u8]); 1] = [(
     &[
         151, 17, 126, // wheels
         1, 7, 132, 4, 133, 4, 1, 1, 3, 216, 4, 251, 6, 200, 1, 208, 15, 207, 15, 3, // broadcast
+    ],
+), (
+    2,
+    &[
+        1, 255, 136, 122, 224, 197, 8, 130, 181, 1, 129, 181, 1, 130, 1, // fix: position, heading, age
+        146, 244, 1, // elapsed
+        0, 1, 127, 128, 1, 244, 3, 255, 127, 128, 128, 1, 255, 255, 3, // proximity
+        1, 2, 20, 21, // targets
+        2, 126, 127, 128, 1, 129, 1, // obstacles
+        1, 135, 4, 132, 4, 133, 4, 1, 1, 3, 216, 4, 251, 6, 200, 1, 208, 15, 207, 15, 3, 172, 2, // heard, each with its age
+    ],
+    &[
+        151, 17, 126, // wheels
+        1, 135, 4, 132, 4, 133, 4, 1, 1, 3, 216, 4, 251, 6, 200, 1, 208, 15, 207, 15, 3, // broadcast
     ],
 )];
 
@@ -136,7 +151,7 @@ fn a_tick_has_exactly_the_bytes_of_its_protocol_version() {
 
 #[test]
 fn a_tick_without_anything_has_exactly_these_bytes() {
-    let nothing = [0, 0, 128, 128, 2, 0];
+    let nothing = [0, 146, 244, 1];
     let far = [0xff, 0xff, 3].repeat(8);
     assert_eq!(bytes(&Percept::nothing()), [&nothing[..], &far, &[0, 0, 0]].concat(), "{WAY_OUT}");
     assert_eq!(bytes(&Command::default()), [0, 0, 0], "{WAY_OUT}");

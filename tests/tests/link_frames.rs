@@ -4,7 +4,7 @@
 use grn_core::robot::link::frame;
 use grn_core::robot::link::message::{Activate, Begin, Chunk, Confirm, REFUSED, Request, Reset, RollBack, VERSION};
 use grn_core::robot::percept::MAX_POSITION;
-use grn_core::robot::{Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::{Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 use grn_link::flashing::flash;
 use grn_tests::robots::{Shipped, client, empty_flash, say, server};
 use rand::{RngExt, SeedableRng};
@@ -47,7 +47,7 @@ fn percept(rng: &mut Pcg64) -> Percept {
         let mut rng = Pcg64::seed_from_u64(rng.random());
         move || Millimetres { x: rng.random_range(-spread..=spread), y: rng.random_range(-spread..=spread) }
     };
-    let heard = |_| Message {
+    let message = |_| Message {
         sender: rng.random(),
         position: millimetres(),
         target: Some(TargetReport {
@@ -58,13 +58,18 @@ fn percept(rng: &mut Pcg64) -> Percept {
         }),
         obstacles: (0..4).map(|_| ObstacleReport { position: millimetres(), age: rng.random() }).collect(),
     };
-    let heard = (0..3).map(heard).collect();
+    let messages: Vec<Message> = (0..3).map(message).collect();
+    let heard = messages.into_iter().map(|message| Heard { message, age_ms: rng.random() }).collect();
     let possible = rng.random_bool(0.9);
     let far = if possible { MAX_POSITION } else { i32::MAX };
     let headings = [[16_384, 0], [0, -16_384], [11_585, 11_585], [-14_189, 8_192]];
     Percept {
-        position: [(); 2].map(|()| rng.random_range(-far..=far)),
-        heading: if possible { headings[rng.random_range(0..headings.len())] } else { rng.random() },
+        fix: rng.random_bool(0.7).then(|| Fix {
+            position: [(); 2].map(|()| rng.random_range(-far..=far)),
+            heading: if possible { headings[rng.random_range(0..headings.len())] } else { rng.random() },
+            age_ms: if rng.random_bool(0.5) { rng.random_range(0..700) } else { rng.random() },
+        }),
+        elapsed_us: if possible { rng.random_range(1_000..=250_000) } else { rng.random() },
         proximity: rng.random(),
         targets: (0..2).map(|target| Sighting { target, position: millimetres() }).collect(),
         obstacles: (0..4).map(|_| millimetres()).collect(),

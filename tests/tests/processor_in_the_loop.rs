@@ -32,7 +32,7 @@ fn emulated_robots_leave_the_same_trace<S: Scalar>(name: &str, seconds: u64) -> 
     let model = Shipped::named("andn-nand-xnor");
     let blob = Blob::<DEFAULT_GENES>::decode(&model.bytes)?;
     let config = || SwarmConfig { scale: 0.25, robots: 12, mothers: 2, ..SwarmConfig::default() };
-    let controller = |robot: usize| Controller::<S>::new(&blob, robot as u8).unwrap();
+    let controller = |robot: usize| Controller::<S>::new(&blob, robot as u16).unwrap();
     let mut native = Swarm::new(&scenario, config(), controller)?;
     let sockets = tempfile::tempdir()?;
     let mut emulated = Swarm::new(&scenario, config(), |robot| -> Box<dyn Brain> {
@@ -41,7 +41,7 @@ fn emulated_robots_leave_the_same_trace<S: Scalar>(name: &str, seconds: u64) -> 
         }
         let emulator = Emulator::start(&image(name), sockets.path().join(robot.to_string())).unwrap();
         let (client, _) = Client::connect(emulator, Patience::default()).unwrap();
-        Box::new(RemoteBrain::start(client, &model.bytes, model.identity, robot as u8).unwrap())
+        Box::new(RemoteBrain::start(client, &model.bytes, model.identity, robot as u16).unwrap())
     })?;
     for _ in 0..seconds * TICKS_PER_SECOND {
         native.step()?;

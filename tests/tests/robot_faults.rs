@@ -8,7 +8,7 @@ use firmware_sim::trace::TraceHeader;
 use firmware_sim::{Recorder, Scenario, Stop, Swarm, SwarmConfig, Trace};
 use grn_core::blob::Blob;
 use grn_core::network::DEFAULT_GENES;
-use grn_core::robot::{Command, Controller, Message, Percept};
+use grn_core::robot::{Command, Controller, Heard, Message, Percept};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use grn_tests::golden::repository;
 use grn_tests::robots::Shipped;
@@ -28,7 +28,7 @@ impl<S: Scalar> Brain for OnRadio<S> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         let mut percept = percept.clone();
         if let Some(own) = self.sent.take().filter(|_| self.loopback) {
-            percept.heard.insert(0, own).unwrap();
+            percept.heard.insert(0, Heard { message: own, age_ms: 0 }).unwrap();
         }
         let command = self.controller.tick(&percept).map_err(|error| BrainError::new(error.to_string()))?;
         self.sent.clone_from(&command.broadcast);
@@ -56,7 +56,7 @@ fn trace_bytes<S: Scalar>(loopback: bool) -> Vec<u8> {
     let blob = Blob::<DEFAULT_GENES>::decode(&Shipped::named("nand-xnor").bytes).unwrap();
     let config = SwarmConfig { robots: 12, ..SwarmConfig::default() };
     let brain =
-        |robot: usize| OnRadio { controller: Controller::<S>::new(&blob, robot as u8).unwrap(), loopback, sent: None };
+        |robot: usize| OnRadio { controller: Controller::<S>::new(&blob, robot as u16).unwrap(), loopback, sent: None };
     let mut recorder = recorder(&scenario, &config);
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
     swarm.run(30 * 32, &mut recorder, |_| ControlFlow::Continue(())).unwrap();
@@ -164,7 +164,7 @@ fn left_behind_a_box<S: Scalar>(model: &str, seed: u64) -> usize {
     let scenario = Scenario::parse(&(text.split("[[wall]]").next().unwrap().to_owned() + BOX)).unwrap();
     let blob = blob(model);
     let config = SwarmConfig { robots: 12, seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() };
-    let brain = |robot: usize| WallBlind(Controller::<S>::new(&blob, robot as u8).unwrap());
+    let brain = |robot: usize| WallBlind(Controller::<S>::new(&blob, robot as u16).unwrap());
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
     swarm.run(swarm.arrival_tick(), &mut (), |_| ControlFlow::Continue(())).unwrap();
     let ring_radius = PatternRuler::new(&blob, &scenario).unwrap().ring_radius();

@@ -7,7 +7,7 @@ use grn_core::blob::{Blob, Identity};
 use grn_core::robot::link::message::{Activate, REFUSED, encode_request};
 use grn_core::robot::link::{Refusal, Server};
 use grn_core::robot::slots::{Layout, MAX_BLOB, MIN_SLOT, SlotError, Slots, Stage, image};
-use grn_core::robot::{Controller, Millimetres, Percept, Sighting};
+use grn_core::robot::{Controller, Fix, Millimetres, Percept, Sighting};
 use grn_core::scalar::NumberType;
 use grn_tests::robots::{LAYOUT, Shipped, empty_flash};
 
@@ -271,7 +271,8 @@ fn a_robot_whose_flash_cannot_be_read_after_a_change_of_blobs_stops() {
     let (mut slots, _) = start(with_history(&old, &older, 4)).unwrap();
     upload(&mut slots, &new).unwrap();
     let uploaded = slots.into_flash();
-    let mut percept = Percept::nothing();
+    let fix = Some(Fix { position: [0; 2], heading: [1 << 14, 0], age_ms: 0 });
+    let mut percept = Percept { fix, ..Percept::nothing() };
     let _ = percept.targets.push(Sighting { target: 0, position: Millimetres { x: 2000, y: 0 } });
     let drives = |blob: &Shipped| {
         let blob: Blob = Blob::decode(&blob.bytes).unwrap();

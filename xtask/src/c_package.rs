@@ -213,9 +213,9 @@ impl Package {
         let version = Release::of(&self.header()?)?.version;
         let cases = [
             (version.as_str(), true),
-            ("0.1", true),
-            ("0.1.99", false),
-            ("0.2", false),
+            ("0.2", true),
+            ("0.2.99", false),
+            ("0.1", false),
             ("0.0.1", false),
             ("1", false),
         ];

@@ -11,7 +11,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Instant;
 
-/// How long a wire may refuse to take bytes before sending fails: far more than a frame of 512 bytes needs at 9600 baud.
+/// How long a wire may refuse to take bytes before sending fails: far more than a frame of 576 bytes needs at 9600 baud.
 const SEND_LIMIT: Duration = Duration::from_secs(3);
 
 /// Why a port was not opened.

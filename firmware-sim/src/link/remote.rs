@@ -17,7 +17,7 @@ impl<W: Wire> RemoteBrain<W> {
     ///
     /// # Errors
     /// [`LinkError`].
-    pub fn start(mut client: Client<W>, blob: &[u8], identity: Identity, number: u8) -> Result<Self, LinkError> {
+    pub fn start(mut client: Client<W>, blob: &[u8], identity: Identity, number: u16) -> Result<Self, LinkError> {
         flashing::flash(&mut client, blob, identity, false, |_| {})?;
         client.ask(&Reset { robot: number })?;
         Ok(RemoteBrain { client })

@@ -20,16 +20,16 @@ fn channel() -> Scenario {
 
 /// Wanders, turns away from what it senses, and talks; remembers what it heard.
 struct Wanderer {
-    number: u8,
+    number: u16,
     tick: u16,
-    heard: Vec<(u16, u8, i16)>,
+    heard: Vec<(u16, u16, i16)>,
 }
 
 impl Brain for Wanderer {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        self.heard.extend(percept.heard.iter().map(|m| (self.tick, m.sender, m.position.x)));
+        self.heard.extend(percept.heard.iter().map(|h| (self.tick, h.message.sender, h.message.position.x)));
         let near = percept.proximity.iter().any(|&p| p < 300);
-        let left = if near { -300 } else { 600 + i16::from(self.number) * 5 };
+        let left = if near { -300 } else { 600 + self.number as i16 * 5 };
         let position = Millimetres { x: self.tick as i16, y: 0 };
         let broadcast = Message { sender: self.number, position, target: None, obstacles: Default::default() };
         self.tick += 1;
@@ -38,7 +38,7 @@ impl Brain for Wanderer {
 }
 
 fn wanderer(robot: usize) -> Wanderer {
-    Wanderer { number: robot as u8, tick: 0, heard: Vec::new() }
+    Wanderer { number: robot as u16, tick: 0, heard: Vec::new() }
 }
 
 /// The real controller.
@@ -76,7 +76,7 @@ fn real_bytes<S: Scalar>() -> Vec<u8> {
         gains: Gains::default(),
     };
     let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
-    let controller = |robot| Real(Controller::<S>::new(&blob, robot as u8).unwrap());
+    let controller = |robot| Real(Controller::<S>::new(&blob, robot as u16).unwrap());
     let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
     recorded(&mut swarm, 320).encode()
 }

@@ -25,9 +25,9 @@
 // The version of this header; grn_version says that of the library. Before 1.0.0 minor versions are not compatible
 // with each other.
 #define GRN_VERSION_MAJOR 0
-#define GRN_VERSION_MINOR 1
+#define GRN_VERSION_MINOR 2
 #define GRN_VERSION_PATCH 0
-#define GRN_VERSION_STRING "0.1.0"
+#define GRN_VERSION_STRING "0.2.0"
 
 
 // The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
@@ -35,6 +35,9 @@
 
 // How often grn_tick is to be called.
 #define GRN_TICKS_PER_SECOND 32
+
+// The time from one tick to the next, microseconds, if ticks come on time.
+#define GRN_NOMINAL_TICK_US 31250
 
 // How many proximity sensors the ring has.
 #define GRN_PROXIMITY_SENSORS 8
@@ -55,13 +58,13 @@
 #define GRN_IDENTITY_BYTES 8
 
 // The most bytes of a packed message.
-#define GRN_PACKED_MESSAGE_BYTES 36
+#define GRN_PACKED_MESSAGE_BYTES 37
 
 // The smallest payload that a fragment fits.
 #define GRN_MIN_PAYLOAD_BYTES 2
 
 // The most bytes of a fragment.
-#define GRN_MAX_FRAGMENT_BYTES 38
+#define GRN_MAX_FRAGMENT_BYTES 39
 
 // The size of an assembler in units of 8 bytes, with some to spare for later versions.
 #define GRN_ASSEMBLER_WORDS 96
@@ -96,6 +99,8 @@ enum GrnStatus
     GRN_STATUS_HEADING = 14,
     // The percept's position is farther from the origin than 32767000 micrometres, east or north.
     GRN_STATUS_POSITION = 15,
+    // The percept's time since the last tick is not 1000 to 250000 microseconds.
+    GRN_STATUS_ELAPSED = 16,
     // The bytes end before the blob's header does.
     GRN_STATUS_BLOB_TRUNCATED = 20,
     // The bytes do not begin as a blob does.
@@ -175,6 +180,19 @@ typedef struct GrnController {
     uint64_t opaque[GRN_CONTROLLER_WORDS];
 } GrnController;
 
+// What a localisation system says of the robot: where it was and how it looked when that was measured.
+typedef struct GrnFix {
+    // Own position in the world, micrometres: east, north; each within 32767000 either way.
+    int32_t position[2];
+    // Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north. The
+    // length of this vector may be a 32nd off 16384, that is from 15872 to 16896.
+    int16_t heading[2];
+    // How long ago it was measured, milliseconds; 0 if that is not known.
+    uint16_t age_ms;
+    // 0; not read.
+    uint8_t reserved[2];
+} GrnFix;
+
 // A position in the world, millimetres, within 32767 either way.
 typedef struct GrnMillimetres {
     // East.
@@ -224,59 +242,58 @@ typedef struct GrnObstacleReport {
 // To be sent, use grn_message_write, whose bytes are fewer, the same on all machines, and protected by a checksum.
 typedef struct GrnMessage {
     // Number of the robot that sends, unique in the swarm.
-    uint8_t sender;
-    // 0; not read.
-    uint8_t reserved0;
+    uint16_t sender;
     // Where it is.
     struct GrnMillimetres position;
     // 0 if it tells of no target; then "target" is not read.
     uint8_t has_target;
     // 0; not read.
-    uint8_t reserved1;
+    uint8_t reserved0;
     // One of the targets it knows, in turn.
     struct GrnTargetReport target;
     // How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
     uint8_t obstacle_count;
     // 0; not read.
-    uint8_t reserved2;
+    uint8_t reserved1;
     // Some of the obstacle points it knows, in turn.
     struct GrnObstacleReport obstacles[GRN_MAX_REPORTED_OBSTACLES];
 } GrnMessage;
 
+// A message received by radio.
+typedef struct GrnHeard {
+    // What was said.
+    struct GrnMessage message;
+    // How long it was on its way as far as the radio knows, milliseconds; 0 if that is not known.
+    uint16_t age_ms;
+} GrnHeard;
+
 // Everything a robot perceives in one tick.
 //
 // Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
-// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because zeros are no heading.
+// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because no time has elapsed.
 typedef struct GrnPercept {
-    // Own position in the world, micrometres: east, north; each within 32767000 either way.
-    int32_t position[2];
-    // Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north. The
-    // length of this vector may be a 32nd off 16384, that is from 15872 to 16896.
-    int16_t heading[2];
+    // Time since the last tick, microseconds, from 1000 to 250000; GRN_NOMINAL_TICK_US if ticks come on time.
+    uint32_t elapsed_us;
+    // Where the robot is, if the localisation system has said so since the last tick.
+    struct GrnFix fix;
     // Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
     // nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
     uint16_t proximity[GRN_PROXIMITY_SENSORS];
+    // 0 if there is no new fix; then "fix" is not read.
+    uint8_t has_fix;
     // How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
     uint8_t target_count;
-    // 0; not read.
-    uint8_t reserved0;
     // Targets seen with own sensors (mother robots).
     struct GrnSighting targets[GRN_MAX_TARGETS];
     // How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
     uint8_t obstacle_count;
-    // 0; not read.
-    uint8_t reserved1;
-    // Points on obstacles seen with own sensors (mother robots).
-    struct GrnMillimetres obstacles[GRN_MAX_SEEN_OBSTACLES];
     // How many of "heard" there are, from 0 to GRN_MAX_HEARD.
     uint8_t heard_count;
-    // 0; not read.
-    uint8_t reserved2;
+    // Points on obstacles seen with own sensors (mother robots).
+    struct GrnMillimetres obstacles[GRN_MAX_SEEN_OBSTACLES];
     // Messages received since the last tick; of more, the strongest. The robot's own, which some radios give back, are
     // ignored.
-    struct GrnMessage heard[GRN_MAX_HEARD];
-    // 0; not read.
-    uint8_t reserved3[2];
+    struct GrnHeard heard[GRN_MAX_HEARD];
 } GrnPercept;
 
 // What a robot does until the next tick.
@@ -321,7 +338,7 @@ GrnStatus grn_load(struct GrnController *controller,
                    const uint8_t *blob,
                    size_t length,
                    int32_t number,
-                   uint8_t robot);
+                   uint16_t robot);
 
 // Says what grn_load would say about a blob, without storage: for example before it is kept in flash.
 //
@@ -330,19 +347,22 @@ GrnStatus grn_load(struct GrnController *controller,
 // Takes about as much stack as grn_load.
 GrnStatus grn_check(const uint8_t *blob, size_t length, int32_t number);
 
-// The percept of a robot at the origin that looks east and perceives nothing around it: what GRN_PERCEPT_NOTHING is.
+// The percept of a robot that perceives nothing, not even where it is: what GRN_PERCEPT_NOTHING is.
 //
 // `percept`: receives it; then put in what is perceived.
 GrnStatus grn_percept_nothing(struct GrnPercept *percept);
 
-// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second.
+// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second,
+// or as often as "elapsed_us" of the percepts says.
 //
-// `percept`: what the robot perceives; entries beyond a count are not read.
+// `percept`: what the robot perceives; entries beyond a count are not read. Before the first fix the robot stands still.
 // `command`: receives what the robot does until the next tick.
 //
 // Returns GRN_STATUS_OK, or what is wrong; the controller is then as before, and `command`, if it is a pointer to one,
 // stops the wheels and sends nothing.
-GrnStatus grn_tick(struct GrnController *controller, const struct GrnPercept *percept, struct GrnCommand *command);
+GrnStatus grn_tick(struct GrnController *controller,
+                   const struct GrnPercept *percept,
+                   struct GrnCommand *command);
 
 // The level of the pattern morphogen M at the robot, as its genes express it now: 0 before the first target is known, then
 // about 0 to 1. A last gene XNOR may take it a little below 0, a last gene XOR a little above 1.
@@ -367,7 +387,7 @@ const char *grn_version(void);
 // The format version of the blobs this library reads.
 uint8_t grn_blob_format_version(void);
 
-// Packs a message for a radio: 8 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
+// Packs a message for a radio: 9 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
 //
 // `message`: for example the broadcast of a command.
 // `bytes`, `capacity`: receive the packed message; GRN_PACKED_MESSAGE_BYTES are always enough.
@@ -388,8 +408,8 @@ GrnStatus grn_message_read(const uint8_t *bytes, size_t length, struct GrnMessag
 //
 // `message`: for example the broadcast of a command.
 // `number`: counts the messages that this robot sends; it may wrap around.
-// `payload`: how many bytes the radio carries at a time. The longest message takes 48 fragments of 2 bytes, 36 of 3,
-// 6 of 8, or 2 of 20 to 37.
+// `payload`: how many bytes the radio carries at a time. The longest message takes 50 fragments of 2 bytes, 37 of 3,
+// 7 of 8, or 2 of 21 to 38.
 // `index`: which fragment, from 0.
 // `fragment`: receives it; room for `payload` bytes, of which no more than GRN_MAX_FRAGMENT_BYTES are used.
 // `length`: receives how many bytes it has; 0 if the message has fewer fragments.
@@ -423,18 +443,20 @@ GrnStatus grn_assembler_receive(struct GrnAssembler *assembler,
 }  // extern "C"
 #endif  // __cplusplus
 
-// A percept in which nothing is perceived, by a robot at the origin that looks east. To begin every tick with:
+// A percept in which nothing is perceived. To begin every tick with:
 //
 //     GrnPercept percept = GRN_PERCEPT_NOTHING;
 #ifdef __cplusplus
 #define GRN_NO_ENTRIES {}
+#define GRN_NO_MESSAGES {}
 #else
 #define GRN_NO_ENTRIES {{0}}
+#define GRN_NO_MESSAGES {{{0}, 0}}
 #endif
 #define GRN_PERCEPT_NOTHING \
-    {{0, 0}, {16384, 0}, \
+    {GRN_NOMINAL_TICK_US, {{0, 0}, {0, 0}, 0, {0, 0}}, \
      {UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX, UINT16_MAX}, \
-     0, 0, GRN_NO_ENTRIES, 0, 0, GRN_NO_ENTRIES, 0, 0, GRN_NO_ENTRIES, {0, 0}}
+     0, 0, GRN_NO_ENTRIES, 0, 0, GRN_NO_ENTRIES, GRN_NO_MESSAGES}
 
 // The compiler lays out all structures as the library does. Checked from C11 and C++11 on.
 #if defined(__cplusplus) && __cplusplus >= 201103L
@@ -466,28 +488,32 @@ GRN_ASSERT_LAYOUT(offsetof(GrnObstacleReport, age) == 4);
 GRN_ASSERT_LAYOUT(offsetof(GrnObstacleReport, reserved) == 5);
 GRN_ASSERT_LAYOUT(sizeof(GrnMessage) == 44);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, sender) == 0);
-GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved0) == 1);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, position) == 2);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, has_target) == 6);
-GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved1) == 7);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved0) == 7);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, target) == 8);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, obstacle_count) == 18);
-GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved2) == 19);
+GRN_ASSERT_LAYOUT(offsetof(GrnMessage, reserved1) == 19);
 GRN_ASSERT_LAYOUT(offsetof(GrnMessage, obstacles) == 20);
-GRN_ASSERT_LAYOUT(sizeof(GrnPercept) == 444);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, position) == 0);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heading) == 8);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, proximity) == 12);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, target_count) == 28);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved0) == 29);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, targets) == 30);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacle_count) == 54);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved1) == 55);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacles) == 56);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard_count) == 88);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved2) == 89);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard) == 90);
-GRN_ASSERT_LAYOUT(offsetof(GrnPercept, reserved3) == 442);
+GRN_ASSERT_LAYOUT(sizeof(GrnHeard) == 46);
+GRN_ASSERT_LAYOUT(offsetof(GrnHeard, message) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnHeard, age_ms) == 44);
+GRN_ASSERT_LAYOUT(sizeof(GrnFix) == 16);
+GRN_ASSERT_LAYOUT(offsetof(GrnFix, position) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnFix, heading) == 8);
+GRN_ASSERT_LAYOUT(offsetof(GrnFix, age_ms) == 12);
+GRN_ASSERT_LAYOUT(offsetof(GrnFix, reserved) == 14);
+GRN_ASSERT_LAYOUT(sizeof(GrnPercept) == 464);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, elapsed_us) == 0);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, fix) == 4);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, proximity) == 20);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, has_fix) == 36);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, target_count) == 37);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, targets) == 38);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacle_count) == 62);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard_count) == 63);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, obstacles) == 64);
+GRN_ASSERT_LAYOUT(offsetof(GrnPercept, heard) == 96);
 GRN_ASSERT_LAYOUT(sizeof(GrnCommand) == 50);
 GRN_ASSERT_LAYOUT(offsetof(GrnCommand, left) == 0);
 GRN_ASSERT_LAYOUT(offsetof(GrnCommand, right) == 2);

@@ -3,7 +3,8 @@
 //! A structure of the header never changes in a released version, and none has padding.
 
 use crate::message::{
-    GrnCommand, GrnMessage, GrnMillimetres, GrnObstacleReport, GrnPercept, GrnSighting, GrnTargetReport,
+    GrnCommand, GrnFix, GrnHeard, GrnMessage, GrnMillimetres, GrnObstacleReport, GrnPercept, GrnSighting,
+    GrnTargetReport,
 };
 use core::mem::offset_of;
 
@@ -53,12 +54,13 @@ layouts! {
     GrnTargetReport 10 { target 0, reserved0 1, position 2, velocity 6, age 8, reserved1 9 }
     GrnObstacleReport 6 { position 0, age 4, reserved 5 }
     GrnMessage 44 {
-        sender 0, reserved0 1, position 2, has_target 6, reserved1 7, target 8, obstacle_count 18, reserved2 19,
-        obstacles 20
+        sender 0, position 2, has_target 6, reserved0 7, target 8, obstacle_count 18, reserved1 19, obstacles 20
     }
-    GrnPercept 444 {
-        position 0, heading 8, proximity 12, target_count 28, reserved0 29, targets 30, obstacle_count 54, reserved1 55,
-        obstacles 56, heard_count 88, reserved2 89, heard 90, reserved3 442
+    GrnHeard 46 { message 0, age_ms 44 }
+    GrnFix 16 { position 0, heading 8, age_ms 12, reserved 14 }
+    GrnPercept 464 {
+        elapsed_us 0, fix 4, proximity 20, has_fix 36, target_count 37, targets 38, obstacle_count 62, heard_count 63,
+        obstacles 64, heard 96
     }
     GrnCommand 50 { left 0, right 2, has_broadcast 4, reserved 5, broadcast 6 }
 }

@@ -55,7 +55,7 @@ pub unsafe extern "C" fn grn_load(
     blob: *const u8,
     length: usize,
     number: i32,
-    robot: u8,
+    robot: u16,
 ) -> GrnStatus {
     GrnStatus::of(|| {
         if controller_size < size_of::<GrnController>() {
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn grn_check(blob: *const u8, length: usize, number: i32) 
     })
 }
 
-/// The percept of a robot at the origin that looks east and perceives nothing around it: what GRN_PERCEPT_NOTHING is.
+/// The percept of a robot that perceives nothing, not even where it is: what GRN_PERCEPT_NOTHING is.
 ///
 /// `percept`: receives it; then put in what is perceived.
 #[unsafe(no_mangle)]
@@ -93,9 +93,10 @@ pub unsafe extern "C" fn grn_percept_nothing(percept: *mut GrnPercept) -> GrnSta
     GrnStatus::of(|| unsafe { write(percept, GrnPercept::nothing()) })
 }
 
-/// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second.
+/// One control tick: perceive, express genes, move. To be called GRN_TICKS_PER_SECOND times a second,
+/// or as often as "elapsed_us" of the percepts says.
 ///
-/// `percept`: what the robot perceives; entries beyond a count are not read.
+/// `percept`: what the robot perceives; entries beyond a count are not read. Before the first fix the robot stands still.
 /// `command`: receives what the robot does until the next tick.
 ///
 /// Returns GRN_STATUS_OK, or what is wrong; the controller is then as before, and `command`, if it is a pointer to one,

@@ -3,13 +3,14 @@
 use crate::status::GrnStatus;
 use grn_core::robot::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
 use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
-use grn_core::robot::percept::HEADING_UNIT;
-use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS};
-use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS, NOMINAL_TICK_US};
+use grn_core::robot::{Command, Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 use heapless::Vec;
 
 /// How often grn_tick is to be called.
 pub const GRN_TICKS_PER_SECOND: usize = 32;
+/// The time from one tick to the next, microseconds, if ticks come on time.
+pub const GRN_NOMINAL_TICK_US: u32 = 31_250;
 /// How many proximity sensors the ring has.
 pub const GRN_PROXIMITY_SENSORS: usize = 8;
 /// The most targets in a percept.
@@ -25,6 +26,7 @@ pub const GRN_IDENTITY_BYTES: usize = 8;
 
 // Numbers in the header, because cbindgen does not look into other crates; held to those of the core.
 const _: () = assert!(GRN_TICKS_PER_SECOND == TICKS_PER_SECOND as usize);
+const _: () = assert!(GRN_NOMINAL_TICK_US == NOMINAL_TICK_US);
 const _: () = assert!(GRN_PROXIMITY_SENSORS == PROXIMITY_SENSORS);
 const _: () = assert!(GRN_MAX_TARGETS == MAX_TARGETS);
 const _: () = assert!(GRN_MAX_SEEN_OBSTACLES == MAX_SEEN_OBSTACLES);
@@ -93,61 +95,77 @@ pub struct GrnObstacleReport {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GrnMessage {
     /// Number of the robot that sends, unique in the swarm.
-    pub sender: u8,
-    /// 0; not read.
-    pub reserved0: u8,
+    pub sender: u16,
     /// Where it is.
     pub position: GrnMillimetres,
     /// 0 if it tells of no target; then "target" is not read.
     pub has_target: u8,
     /// 0; not read.
-    pub reserved1: u8,
+    pub reserved0: u8,
     /// One of the targets it knows, in turn.
     pub target: GrnTargetReport,
     /// How many of "obstacles" there are, from 0 to GRN_MAX_REPORTED_OBSTACLES.
     pub obstacle_count: u8,
     /// 0; not read.
-    pub reserved2: u8,
+    pub reserved1: u8,
     /// Some of the obstacle points it knows, in turn.
     pub obstacles: [GrnObstacleReport; GRN_MAX_REPORTED_OBSTACLES],
 }
 
-/// Everything a robot perceives in one tick.
-///
-/// Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
-/// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because zeros are no heading.
+/// A message received by radio.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GrnPercept {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnHeard {
+    /// What was said.
+    pub message: GrnMessage,
+    /// How long it was on its way as far as the radio knows, milliseconds; 0 if that is not known.
+    pub age_ms: u16,
+}
+
+/// What a localisation system says of the robot: where it was and how it looked when that was measured.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GrnFix {
     /// Own position in the world, micrometres: east, north; each within 32767000 either way.
     pub position: [i32; 2],
     /// Own heading as (cos, sin), in units of 2^-14, anticlockwise from east: 16384, 0 is east, 0, 16384 is north. The
     /// length of this vector may be a 32nd off 16384, that is from 15872 to 16896.
     pub heading: [i16; 2],
+    /// How long ago it was measured, milliseconds; 0 if that is not known.
+    pub age_ms: u16,
+    /// 0; not read.
+    pub reserved: [u8; 2],
+}
+
+/// Everything a robot perceives in one tick.
+///
+/// Begin every tick with GRN_PERCEPT_NOTHING or grn_percept_nothing, then put in what is perceived. Zeros mean something
+/// else than nothing: obstacles that touch the robot on all sides; grn_tick refuses them, because no time has elapsed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrnPercept {
+    /// Time since the last tick, microseconds, from 1000 to 250000; GRN_NOMINAL_TICK_US if ticks come on time.
+    pub elapsed_us: u32,
+    /// Where the robot is, if the localisation system has said so since the last tick.
+    pub fix: GrnFix,
     /// Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; UINT16_MAX when
     /// nothing is in range (5 cm). Bearings from the heading, degrees, left positive: -17, -50, -90, -150, 150, 90, 50, 17.
     pub proximity: [u16; GRN_PROXIMITY_SENSORS],
+    /// 0 if there is no new fix; then "fix" is not read.
+    pub has_fix: u8,
     /// How many of "targets" there are, from 0 to GRN_MAX_TARGETS.
     pub target_count: u8,
-    /// 0; not read.
-    pub reserved0: u8,
     /// Targets seen with own sensors (mother robots).
     pub targets: [GrnSighting; GRN_MAX_TARGETS],
     /// How many of "obstacles" there are, from 0 to GRN_MAX_SEEN_OBSTACLES.
     pub obstacle_count: u8,
-    /// 0; not read.
-    pub reserved1: u8,
-    /// Points on obstacles seen with own sensors (mother robots).
-    pub obstacles: [GrnMillimetres; GRN_MAX_SEEN_OBSTACLES],
     /// How many of "heard" there are, from 0 to GRN_MAX_HEARD.
     pub heard_count: u8,
-    /// 0; not read.
-    pub reserved2: u8,
+    /// Points on obstacles seen with own sensors (mother robots).
+    pub obstacles: [GrnMillimetres; GRN_MAX_SEEN_OBSTACLES],
     /// Messages received since the last tick; of more, the strongest. The robot's own, which some radios give back, are
     /// ignored.
-    pub heard: [GrnMessage; GRN_MAX_HEARD],
-    /// 0; not read.
-    pub reserved3: [u8; 2],
+    pub heard: [GrnHeard; GRN_MAX_HEARD],
 }
 
 /// What a robot does until the next tick.
@@ -209,6 +227,20 @@ impl From<ObstacleReport> for GrnObstacleReport {
     }
 }
 
+impl From<GrnFix> for Fix {
+    fn from(GrnFix { position, heading, age_ms, reserved: _ }: GrnFix) -> Self {
+        Fix { position, heading, age_ms }
+    }
+}
+
+impl TryFrom<&GrnHeard> for Heard {
+    type Error = GrnStatus;
+
+    fn try_from(GrnHeard { message, age_ms }: &GrnHeard) -> Result<Self, GrnStatus> {
+        Ok(Heard { message: message.try_into()?, age_ms: *age_ms })
+    }
+}
+
 impl TryFrom<&GrnMessage> for Message {
     type Error = GrnStatus;
 
@@ -234,13 +266,12 @@ impl From<Message> for GrnMessage {
         }
         GrnMessage {
             sender: message.sender,
-            reserved0: 0,
             position: message.position.into(),
             has_target: message.target.is_some().into(),
-            reserved1: 0,
+            reserved0: 0,
             target: message.target.map(Into::into).unwrap_or_default(),
             obstacle_count: message.obstacles.len() as u8,
-            reserved2: 0,
+            reserved1: 0,
             obstacles,
         }
     }
@@ -250,32 +281,29 @@ impl GrnPercept {
     /// What GRN_PERCEPT_NOTHING is in C.
     pub fn nothing() -> Self {
         GrnPercept {
-            position: [0; 2],
-            heading: [HEADING_UNIT, 0],
+            elapsed_us: GRN_NOMINAL_TICK_US,
+            fix: GrnFix::default(),
             proximity: [u16::MAX; GRN_PROXIMITY_SENSORS],
+            has_fix: 0,
             target_count: 0,
-            reserved0: 0,
             targets: [GrnSighting::default(); GRN_MAX_TARGETS],
             obstacle_count: 0,
-            reserved1: 0,
-            obstacles: [GrnMillimetres::default(); GRN_MAX_SEEN_OBSTACLES],
             heard_count: 0,
-            reserved2: 0,
-            heard: [GrnMessage::default(); GRN_MAX_HEARD],
-            reserved3: [0; 2],
+            obstacles: [GrnMillimetres::default(); GRN_MAX_SEEN_OBSTACLES],
+            heard: [GrnHeard::default(); GRN_MAX_HEARD],
         }
     }
 
     /// Puts it into a percept in which nothing is perceived, in place: on the chip's stack it is large.
     pub(crate) fn tell(&self, percept: &mut Percept) -> Result<(), GrnStatus> {
         // By name, so that a field that a percept gets is missed here.
-        let Percept { position, heading, proximity, targets, obstacles, heard } = percept;
-        *position = self.position;
-        *heading = self.heading;
+        let Percept { fix, elapsed_us, proximity, targets, obstacles, heard } = percept;
+        *fix = (self.has_fix != 0).then(|| self.fix.into());
+        *elapsed_us = self.elapsed_us;
         *proximity = self.proximity;
         fill(targets, &self.targets, self.target_count, GrnStatus::TooManyTargets, |&sighting| Ok(sighting.into()))?;
         fill(obstacles, &self.obstacles, self.obstacle_count, GrnStatus::TooManyObstacles, |&point| Ok(point.into()))?;
-        fill(heard, &self.heard, self.heard_count, GrnStatus::TooManyHeard, |message| message.try_into())
+        fill(heard, &self.heard, self.heard_count, GrnStatus::TooManyHeard, |heard| heard.try_into())
     }
 }
 

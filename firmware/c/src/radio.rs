@@ -10,11 +10,11 @@ use grn_core::robot::radio::fragments::{Fragments, MAX_FRAGMENT, PayloadError};
 use grn_core::robot::radio::packed::{self, MAX_PACKED, PackedError};
 
 /// The most bytes of a packed message.
-pub const GRN_PACKED_MESSAGE_BYTES: usize = 36;
+pub const GRN_PACKED_MESSAGE_BYTES: usize = 37;
 /// The smallest payload that a fragment fits.
 pub const GRN_MIN_PAYLOAD_BYTES: usize = 2;
 /// The most bytes of a fragment.
-pub const GRN_MAX_FRAGMENT_BYTES: usize = 38;
+pub const GRN_MAX_FRAGMENT_BYTES: usize = 39;
 /// The size of an assembler in units of 8 bytes, with some to spare for later versions.
 pub const GRN_ASSEMBLER_WORDS: usize = 96;
 
@@ -56,7 +56,7 @@ impl From<PayloadError> for GrnStatus {
     }
 }
 
-/// Packs a message for a radio: 8 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
+/// Packs a message for a radio: 9 to GRN_PACKED_MESSAGE_BYTES bytes with a checksum, the same on every machine.
 ///
 /// `message`: for example the broadcast of a command.
 /// `bytes`, `capacity`: receive the packed message; GRN_PACKED_MESSAGE_BYTES are always enough.
@@ -109,8 +109,8 @@ pub unsafe extern "C" fn grn_message_read(bytes: *const u8, length: usize, messa
 ///
 /// `message`: for example the broadcast of a command.
 /// `number`: counts the messages that this robot sends; it may wrap around.
-/// `payload`: how many bytes the radio carries at a time. The longest message takes 48 fragments of 2 bytes, 36 of 3,
-/// 6 of 8, or 2 of 20 to 37.
+/// `payload`: how many bytes the radio carries at a time. The longest message takes 50 fragments of 2 bytes, 37 of 3,
+/// 7 of 8, or 2 of 21 to 38.
 /// `index`: which fragment, from 0.
 /// `fragment`: receives it; room for `payload` bytes, of which no more than GRN_MAX_FRAGMENT_BYTES are used.
 /// `length`: receives how many bytes it has; 0 if the message has fewer fragments.

@@ -34,6 +34,8 @@ pub enum GrnStatus {
     Heading = 14,
     /// The percept's position is farther from the origin than 32767000 micrometres, east or north.
     Position = 15,
+    /// The percept's time since the last tick is not 1000 to 250000 microseconds.
+    Elapsed = 16,
     /// The bytes end before the blob's header does.
     BlobTruncated = 20,
     /// The bytes do not begin as a blob does.
@@ -77,7 +79,7 @@ pub enum GrnStatus {
 }
 
 impl GrnStatus {
-    const TEXTS: [(Self, &CStr); 32] = [
+    const TEXTS: [(Self, &CStr); 33] = [
         (Self::Ok, c"done"),
         (Self::NullPointer, c"a pointer is null: pass the address of an object"),
         (
@@ -97,13 +99,14 @@ impl GrnStatus {
             Self::TooManyReported,
             c"a message has more than GRN_MAX_REPORTED_OBSTACLES obstacle points: drop it, it is damaged",
         ),
-        (
-            Self::Heading,
-            c"the heading is not a unit vector: give its cosine and sine times 16384; begin with GRN_PERCEPT_NOTHING",
-        ),
+        (Self::Heading, c"the heading is not a unit vector: give its cosine and sine times 16384"),
         (
             Self::Position,
             c"the position is out of range: give micrometres, within 32767000 of the origin in both directions",
+        ),
+        (
+            Self::Elapsed,
+            c"the time since the last tick is not 1000 to 250000 microseconds: begin with GRN_PERCEPT_NOTHING",
         ),
         (Self::BlobTruncated, c"the blob is cut short: copy or upload it again"),
         (Self::NotABlob, c"not a GRN blob, it does not begin with \"GRNb\": pass a file that grn evolve wrote"),
@@ -175,6 +178,7 @@ impl From<PerceptError> for GrnStatus {
         match error {
             PerceptError::Position { .. } => Self::Position,
             PerceptError::Heading { .. } => Self::Heading,
+            PerceptError::Elapsed { .. } => Self::Elapsed,
         }
     }
 }

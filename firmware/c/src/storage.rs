@@ -109,7 +109,7 @@ impl GrnController {
 }
 
 /// Makes a controller from a blob and, if there is storage for it, keeps it there.
-pub fn load(bytes: &[u8], number: i32, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
+pub fn load(bytes: &[u8], number: i32, robot: u16, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
     const F32: i32 = GrnNumber::F32 as i32;
     const Q: i32 = GrnNumber::Q8_24 as i32;
     let blob = Blob::decode(bytes);
@@ -125,7 +125,7 @@ pub fn load(bytes: &[u8], number: i32, robot: u8, storage: Option<&mut GrnContro
 // is not moved out of its `Result`, which would put it there twice.
 
 #[inline(never)]
-fn build<S: Number>(blob: &Blob, robot: u8, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
+fn build<S: Number>(blob: &Blob, robot: u16, storage: Option<&mut GrnController>) -> Result<(), GrnStatus> {
     match (Controller::<S>::new(blob, robot), storage) {
         (Ok(controller), Some(storage)) => storage.fill(controller),
         (Ok(_), None) => {}

@@ -120,32 +120,40 @@ fn a_percept_of_zeros_is_refused_and_not_taken_for_obstacles_all_around() {
     // SAFETY: a percept is made of integers only.
     let zeros: GrnPercept = unsafe { std::mem::zeroed() };
     let mut command = wild();
-    assert_eq!(unsafe { grn_tick(&mut loaded(), &zeros, &mut command) }, GrnStatus::Heading);
+    assert_eq!(unsafe { grn_tick(&mut loaded(), &zeros, &mut command) }, GrnStatus::Elapsed);
     assert_eq!(command, GrnCommand::default(), "the robot stops");
 }
 
 #[test]
 fn with_nothing_perceived_the_robot_stands_still() {
-    let mut told = GrnPercept { heading: [1, 2], target_count: 9, ..GrnPercept::nothing() };
+    let mut told = GrnPercept { has_fix: 1, target_count: 9, ..GrnPercept::nothing() };
     assert_eq!(unsafe { grn_percept_nothing(&mut told) }, GrnStatus::Ok);
     assert_eq!(told, GrnPercept::nothing());
     let command = tick(&mut loaded(), &told);
     assert_eq!((command.left, command.right), (0, 0));
 }
 
+/// Nothing but a fix at the origin, looking east.
+fn placed() -> GrnPercept {
+    let fix = GrnFix { heading: [16_384, 0], ..GrnFix::default() };
+    GrnPercept { has_fix: 1, fix, ..GrnPercept::nothing() }
+}
+
 #[test]
-fn headings_and_positions_that_no_robot_can_have_are_refused_and_change_nothing() {
+fn percepts_that_no_robot_can_have_are_refused_and_change_nothing() {
     type Spoil = fn(&mut GrnPercept);
-    let spoils: [(Spoil, GrnStatus); 5] = [
-        (|percept| percept.heading = [90, 0], GrnStatus::Heading),
-        (|percept| percept.heading = [i16::MIN, i16::MIN], GrnStatus::Heading),
-        (|percept| percept.heading = [0, 15_871], GrnStatus::Heading),
-        (|percept| percept.position = [32_767_001, 0], GrnStatus::Position),
-        (|percept| percept.position = [0, i32::MIN], GrnStatus::Position),
+    let spoils: [(Spoil, GrnStatus); 7] = [
+        (|percept| percept.fix.heading = [90, 0], GrnStatus::Heading),
+        (|percept| percept.fix.heading = [i16::MIN, i16::MIN], GrnStatus::Heading),
+        (|percept| percept.fix.heading = [0, 15_871], GrnStatus::Heading),
+        (|percept| percept.fix.position = [32_767_001, 0], GrnStatus::Position),
+        (|percept| percept.fix.position = [0, i32::MIN], GrnStatus::Position),
+        (|percept| percept.elapsed_us = 999, GrnStatus::Elapsed),
+        (|percept| percept.elapsed_us = 250_001, GrnStatus::Elapsed),
     ];
     let (mut storage, mut undisturbed) = (loaded(), loaded());
     for (spoil, expected) in spoils {
-        let mut percept = GrnPercept::nothing();
+        let mut percept = placed();
         spoil(&mut percept);
         let mut command = wild();
         assert_eq!(unsafe { grn_tick(&mut storage, &percept, &mut command) }, expected);
@@ -153,7 +161,7 @@ fn headings_and_positions_that_no_robot_can_have_are_refused_and_change_nothing(
     }
     // Whose turn it is to speak would tell, had any of these been a tick.
     for _ in 0..8 {
-        assert_eq!(tick(&mut storage, &GrnPercept::nothing()), tick(&mut undisturbed, &GrnPercept::nothing()));
+        assert_eq!(tick(&mut storage, &placed()), tick(&mut undisturbed, &placed()));
     }
 }
 
@@ -166,12 +174,12 @@ fn every_byte_of_a_command_is_written() {
             let mut command: GrnCommand = unsafe { std::mem::transmute([before; size_of::<GrnCommand>()]) };
             // SAFETY: a controller that is loaded may be copied.
             let mut same = unsafe { std::ptr::read(&storage) };
-            assert_eq!(unsafe { grn_tick(&mut same, &GrnPercept::nothing(), &mut command) }, GrnStatus::Ok);
+            assert_eq!(unsafe { grn_tick(&mut same, &placed(), &mut command) }, GrnStatus::Ok);
             // SAFETY: as above.
             unsafe { std::mem::transmute::<GrnCommand, [u8; size_of::<GrnCommand>()]>(command) }
         });
         assert_eq!(written[0], written[1]);
-        tick(&mut storage, &GrnPercept::nothing());
+        tick(&mut storage, &placed());
     }
 }
 
@@ -186,33 +194,33 @@ fn counts_beyond_the_arrays_are_refused_and_change_nothing() {
         (
             |percept| {
                 percept.heard_count = 1;
-                percept.heard[0].obstacle_count = 5;
+                percept.heard[0].message.obstacle_count = 5;
             },
             GrnStatus::TooManyReported,
         ),
         (
             |percept| {
                 percept.heard_count = 8;
-                percept.heard[7].obstacle_count = 255;
+                percept.heard[7].message.obstacle_count = 255;
             },
             GrnStatus::TooManyReported,
         ),
     ];
     let mut storage = loaded();
     for (spoil, expected) in spoils {
-        let mut percept = GrnPercept::nothing();
+        let mut percept = placed();
         spoil(&mut percept);
         let mut command = wild();
         assert_eq!(unsafe { grn_tick(&mut storage, &percept, &mut command) }, expected);
         assert_eq!(command, GrnCommand::default(), "the robot stops");
     }
     // Whose turn it is to speak would tell, had any of these been a tick. What is beyond the counts does not matter.
-    let mut percept = GrnPercept { target_count: 1, ..GrnPercept::nothing() };
+    let mut percept = GrnPercept { target_count: 1, ..placed() };
     let mut undisturbed = loaded();
     for _ in 0..8 {
-        percept.heard[0].obstacle_count = 0;
+        percept.heard[0].message.obstacle_count = 0;
         let expected = tick(&mut undisturbed, &percept);
-        percept.heard[0].obstacle_count = 255;
+        percept.heard[0].message.obstacle_count = 255;
         assert_eq!(tick(&mut storage, &percept), expected);
     }
 }
@@ -318,7 +326,7 @@ fn every_number_has_a_text() {
     assert!(known.iter().all(|text| text.is_ascii() && !text.contains('\n')));
     known.sort_unstable();
     known.dedup();
-    assert_eq!(known.len(), 32, "each its own");
+    assert_eq!(known.len(), 33, "each its own");
     assert_eq!(text(grn_version()), env!("CARGO_PKG_VERSION"));
     assert_eq!(grn_blob_format_version(), grn_core::blob::FORMAT_VERSION);
 }

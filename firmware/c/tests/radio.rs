@@ -4,7 +4,7 @@
 use grn_c::*;
 use std::ptr::{null, null_mut};
 
-fn message(sender: u8) -> GrnMessage {
+fn message(sender: u16) -> GrnMessage {
     let position = GrnMillimetres { x: 12_345, y: -23_456 };
     let target = GrnTargetReport { target: 3, position, velocity: [-100, 100], age: 7, ..GrnTargetReport::default() };
     let point = GrnObstacleReport { position: GrnMillimetres { x: -1, y: 900 }, age: 9, reserved: 0 };
@@ -61,19 +61,19 @@ fn messages_come_back_and_every_flipped_bit_is_refused() {
         assert_eq!(read(&flipped), (GrnStatus::MessageDamaged, GrnMessage::default()), "bit {bit}");
     }
     assert_eq!(read(&bytes[..7]).0, GrnStatus::MessageLength);
-    assert_eq!(packed(&GrnMessage::default()), [0x10, 0, 0, 0, 0, 0, 0x94, 0x14]);
+    assert_eq!(packed(&GrnMessage::default()), [0x20, 0, 0, 0, 0, 0, 0, 0x38, 0x9f]);
 }
 
 #[test]
 fn reserved_bytes_are_not_sent() {
-    let dirty = GrnMessage { reserved0: 1, reserved1: 2, reserved2: 3, ..message(7) };
+    let dirty = GrnMessage { reserved0: 1, reserved1: 2, ..message(7) };
     assert_eq!(packed(&dirty), packed(&message(7)));
 }
 
 #[test]
 fn fragments_become_messages_in_any_order() {
     let mut assembler = GrnAssembler::default();
-    for (tick, payload) in (0..).map(|tick| 100 * tick).zip([2, 3, 8, 20, 30, 38, 200]) {
+    for (tick, payload) in (0..).map(|tick| 100 * tick).zip([2, 3, 8, 20, 30, 39, 200]) {
         let mut pieces = fragments(&message(7), payload, 1);
         pieces.reverse();
         let (last, others) = pieces.split_last().unwrap();
@@ -122,7 +122,7 @@ fn what_cannot_be_sent_or_heard_is_refused() {
     assert_eq!(refused, [GrnStatus::NullPointer; 11]);
     let refused = unsafe {
         [
-            grn_message_write(&good, room, 35, &mut length),
+            grn_message_write(&good, room, 36, &mut length),
             grn_message_write(&damaged, room, 64, &mut length),
             grn_message_fragment(&damaged, 0, 8, 0, room, &mut length),
             grn_message_fragment(&good, 0, 1, 0, room, &mut length),

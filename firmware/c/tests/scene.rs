@@ -3,7 +3,9 @@
 
 use grn_c::*;
 use grn_core::blob::Blob;
-use grn_core::robot::{Command, Controller, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::{
+    Command, Controller, Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport,
+};
 use grn_core::scalar::{Q8_24, Scalar};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -31,8 +33,7 @@ fn perceive(tick: i16) -> Percept {
         sin += cos / 16;
     }
     let mut percept = Percept::nothing();
-    percept.position = [-400_000 + 3125 * i32::from(tick), -300_000];
-    percept.heading = [cos, sin];
+    percept.fix = Some(Fix { position: [-400_000 + 3125 * i32::from(tick), -300_000], heading: [cos, sin], age_ms: 0 });
     if tick >= 48 {
         percept.proximity[5] = (400 - 10 * (tick - 48)) as u16;
     }
@@ -51,7 +52,7 @@ fn perceive(tick: i16) -> Percept {
             target: (tick > 16).then_some(target),
             obstacles: obstacles.into_iter().collect(),
         };
-        percept.heard.push(message).unwrap();
+        percept.heard.push(Heard { message, age_ms: 0 }).unwrap();
     }
     percept
 }
@@ -118,9 +119,12 @@ fn message(message: &Message) -> GrnMessage {
 
 fn percept(percept: &Percept) -> GrnPercept {
     // By name, so that a field that a percept gets is missed here.
-    let Percept { position, heading, proximity, targets, obstacles, heard } = percept;
+    let Percept { fix, elapsed_us, proximity, targets, obstacles, heard } = percept;
     let mut told = GrnPercept::nothing();
-    (told.position, told.heading, told.proximity) = (*position, *heading, *proximity);
+    (told.elapsed_us, told.proximity) = (*elapsed_us, *proximity);
+    if let Some(Fix { position, heading, age_ms }) = *fix {
+        (told.has_fix, told.fix) = (1, GrnFix { position, heading, age_ms, reserved: [0; 2] });
+    }
     told.target_count = targets.len() as u8;
     told.obstacle_count = obstacles.len() as u8;
     told.heard_count = heard.len() as u8;
@@ -131,7 +135,7 @@ fn percept(percept: &Percept) -> GrnPercept {
         *slot = point(position);
     }
     for (slot, heard) in told.heard.iter_mut().zip(heard) {
-        *slot = message(heard);
+        *slot = GrnHeard { message: message(&heard.message), age_ms: heard.age_ms };
     }
     told
 }
@@ -147,9 +151,14 @@ fn random(state: &mut u64) -> Percept {
     let angle = f64::from(number(0, 359)).to_radians();
     let (sin, cos) = libm::sincos(angle);
     let length = f64::from(number(15_880, 16_880));
-    let mut percept = Percept {
+    let fix = Fix {
         position: [number(-800_000, 800_000), number(-800_000, 800_000)],
         heading: [(cos * length) as i16, (sin * length) as i16],
+        age_ms: number(0, 400) as u16,
+    };
+    let mut percept = Percept {
+        fix: (number(0, 3) > 0).then_some(fix),
+        elapsed_us: number(1_000, 250_000) as u32,
         proximity: [(); 8].map(|()| number(0, 500) as u16),
         targets: heapless::Vec::new(),
         obstacles: heapless::Vec::new(),
@@ -170,7 +179,7 @@ fn random(state: &mut u64) -> Percept {
             age: number(0, 255) as u8,
         };
         let mut message = Message {
-            sender: number(0, 255) as u8,
+            sender: number(0, 65_535) as u16,
             position: place(&mut number),
             target: (number(0, 1) == 1).then_some(report),
             obstacles: heapless::Vec::new(),
@@ -179,7 +188,7 @@ fn random(state: &mut u64) -> Percept {
             let age = number(0, 255) as u8;
             message.obstacles.push(ObstacleReport { position: place(&mut number), age }).unwrap();
         }
-        percept.heard.push(message).unwrap();
+        percept.heard.push(Heard { message, age_ms: number(0, 3000) as u16 }).unwrap();
     }
     percept
 }
@@ -231,6 +240,7 @@ fn the_morphogen_of_a_last_gene_xnor_may_be_below_zero() {
     assert_eq!(unsafe { grn_load(&mut storage, size, bytes.as_ptr(), bytes.len(), number, 1) }, GrnStatus::Ok);
     // Nothing but a target far away.
     let mut told = GrnPercept::nothing();
+    (told.has_fix, told.fix.heading) = (1, [16_384, 0]);
     told.target_count = 1;
     told.targets[0].position = GrnMillimetres { x: 20_000, y: 0 };
     let (mut command, mut morphogen) = (GrnCommand::default(), 0.0);

@@ -69,6 +69,8 @@ static void measure_stack(GrnNumber number, const char *name) {
     static GrnController controller CONTROLLER_PLACE;
     static GrnCommand command;
     static GrnPercept percept = GRN_PERCEPT_NOTHING;
+    percept.has_fix = 1;
+    percept.fix.heading[0] = 16384;
     percept.target_count = percept.obstacle_count = percept.heard_count = 1;
     paint_stack();
     grn_load(&controller, sizeof controller, blob, (size_t)(blob_end - blob), number, 0);

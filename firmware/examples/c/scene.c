@@ -11,16 +11,17 @@ enum { TICKS = 64, ROBOT = 3, NEIGHBOUR = 7 };
 static void perceive(int tick, GrnPercept *percept) {
     *percept = (GrnPercept)GRN_PERCEPT_NOTHING;
     // At 100 mm/s to the east, 0.3 m south of the origin.
-    percept->position[0] = -400000 + 3125 * tick;
-    percept->position[1] = -300000;
+    percept->has_fix = 1;
+    percept->fix.position[0] = -400000 + 3125 * tick;
+    percept->fix.position[1] = -300000;
     // First to the east, then a sixteenth of a radian further to the left in each tick.
     int32_t cos = 1 << 14, sin = 0;
     for (int turn = 0; turn < tick; turn++) {
         cos -= sin / 16;
         sin += cos / 16;
     }
-    percept->heading[0] = (int16_t)cos;
-    percept->heading[1] = (int16_t)sin;
+    percept->fix.heading[0] = (int16_t)cos;
+    percept->fix.heading[1] = (int16_t)sin;
     if (tick >= 48) percept->proximity[5] = (uint16_t)(400 - 10 * (tick - 48));  // 90 degrees left
     if (tick % 8 == 0) {
         percept->target_count = 1;
@@ -28,7 +29,7 @@ static void perceive(int tick, GrnPercept *percept) {
     }
     if (tick % 4 == 1) {
         percept->heard_count = 1;
-        GrnMessage *message = &percept->heard[0];
+        GrnMessage *message = &percept->heard[0].message;
         message->sender = NEIGHBOUR;
         message->position = (GrnMillimetres){.x = (int16_t)(3 * tick), .y = -250};
         message->has_target = tick > 16;

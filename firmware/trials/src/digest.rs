@@ -67,7 +67,8 @@ impl Hasher {
     }
 
     fn message(&mut self, message: &Message) {
-        self.bytes(&[message.sender, u8::from(message.target.is_some()), message.obstacles.len() as u8]);
+        self.bytes(&message.sender.to_le_bytes());
+        self.bytes(&[u8::from(message.target.is_some()), message.obstacles.len() as u8]);
         self.position(message.position);
         if let Some(report) = &message.target {
             self.bytes(&[report.target, report.age]);

@@ -159,7 +159,7 @@ fn integrate<S: Bits>(network: &Network<S>, hasher: &mut Hasher) {
 }
 
 fn run<S: Bits>(blob: &Blob, number: u32, ticks: u32, hasher: &mut Hasher) {
-    let robot = number as u8;
+    let robot = number as u16;
     let mut controller = match Controller::<S>::new(blob, robot) {
         Ok(controller) => controller,
         Err(error) => return hasher.bytes(refusal(&error)),

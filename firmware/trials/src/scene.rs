@@ -1,7 +1,8 @@
 //! The scene in which costs are measured: all a robot can perceive in one tick.
 
 use grn_core::bounded::filled;
-use grn_core::robot::{Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::percept::{HEADING_UNIT, NOMINAL_TICK_US};
+use grn_core::robot::{Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 
 /// Two targets, eight obstacle points and eight neighbours.
 const TARGETS: [Millimetres; 2] = [Millimetres { x: 150, y: 60 }, Millimetres { x: -220, y: 180 }];
@@ -17,8 +18,8 @@ fn obstacle(number: u8) -> Millimetres {
 pub fn everything() -> Percept {
     // Every field by name, so that a new one is missed here and its costs are measured.
     Percept {
-        position: [0, 0],
-        heading: [1 << 14, 0],
+        fix: Some(Fix { position: [0, 0], heading: [HEADING_UNIT, 0], age_ms: 0 }),
+        elapsed_us: NOMINAL_TICK_US,
         proximity: [120, 250, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
         targets: filled((0..).zip(TARGETS).map(|(target, position)| Sighting { target, position })),
         obstacles: filled((0..8).map(obstacle)),
@@ -29,7 +30,8 @@ pub fn everything() -> Percept {
 /// The same with all obstacle points farther north by this many millimetres.
 pub fn everything_farther(north: i16) -> Percept {
     let mut percept = everything();
-    let told = percept.heard.iter_mut().flat_map(|message| &mut message.obstacles).map(|report| &mut report.position);
+    let told =
+        percept.heard.iter_mut().flat_map(|heard| &mut heard.message.obstacles).map(|report| &mut report.position);
     for position in percept.obstacles.iter_mut().chain(told) {
         position.y += north;
     }
@@ -46,14 +48,14 @@ pub fn in_turn(tick: u32) -> Percept {
 /// The same place, where only two proximity sensors feel something.
 pub fn nothing() -> Percept {
     let mut percept = Percept::nothing();
-    percept.proximity = everything().proximity;
+    (percept.fix, percept.proximity) = (everything().fix, everything().proximity);
     percept
 }
 
-fn neighbour(number: u8) -> Message {
+fn neighbour(number: u8) -> Heard {
     let (column, row) = (i16::from(number % 4), i16::from(number / 4));
-    Message {
-        sender: number + 1,
+    let message = Message {
+        sender: u16::from(number) + 1,
         position: Millimetres { x: 90 * column - 140, y: 160 * row - 80 },
         target: (0..).zip(TARGETS).nth(usize::from(number % 2)).map(|(target, position)| TargetReport {
             target,
@@ -62,5 +64,6 @@ fn neighbour(number: u8) -> Message {
             age: 3,
         }),
         obstacles: filled((0..4).map(|point| ObstacleReport { position: obstacle((number + point) % 8), age: 1 })),
-    }
+    };
+    Heard { message, age_ms: 0 }
 }

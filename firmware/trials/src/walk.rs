@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 use grn_core::bounded::filled;
-use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES};
-use grn_core::robot::{Command, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
+use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, NOMINAL_TICK_US};
+use grn_core::robot::{Command, Fix, Heard, Message, Millimetres, ObstacleReport, Percept, Sighting, TargetReport};
 
 /// One robot's walk.
 #[derive(Clone, Debug)]
@@ -36,12 +36,16 @@ impl Walk {
         let (seen, points) = if self.sees { (2, self.random.below(MAX_SEEN_OBSTACLES as u32 + 1)) } else { (0, 0) };
         let messages = self.random.below(MAX_HEARD as u32 + 1);
         Percept {
-            position: [near(x, &mut self.random), near(y, &mut self.random)],
-            heading: self.heading.map(|component| component as i16),
+            fix: Some(Fix {
+                position: [near(x, &mut self.random), near(y, &mut self.random)],
+                heading: self.heading.map(|component| component as i16),
+                age_ms: 0,
+            }),
+            elapsed_us: NOMINAL_TICK_US,
             proximity: [(); 8].map(|()| if self.random.once_in(12) { self.random.below(500) as u16 } else { u16::MAX }),
             targets: filled((0..seen).map(|target| Sighting { target, position: self.target(target, 8) })),
             obstacles: filled((0..points).map(|_| self.obstacle())),
-            heard: filled((0..messages).map(|_| self.message())),
+            heard: filled((0..messages).map(|_| Heard { message: self.message(), age_ms: 0 })),
         }
     }
 
@@ -86,7 +90,7 @@ impl Walk {
         let target = self.random.below(2) as u8;
         let points = self.random.below(5);
         Message {
-            sender: self.random.below(12) as u8,
+            sender: self.random.below(12) as u16,
             position: self.near(x, y, 250),
             target: (!self.random.once_in(4)).then(|| TargetReport {
                 target,

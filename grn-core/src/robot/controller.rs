@@ -6,8 +6,8 @@ use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
 use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Motion, PatternHere};
-use super::percept::{Command, Percept, PerceptError};
-use super::position::Millimetres;
+use super::percept::{Command, Fix, Percept, PerceptError};
+use super::position::millimetres;
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
 use crate::field::{Field, Morphogens};
@@ -54,7 +54,7 @@ impl core::error::Error for LoadError {}
 /// Equal blobs and equal percepts give equal commands, bit for bit, on every machine.
 #[derive(Clone, Debug)]
 pub struct Controller<S, const N: usize = DEFAULT_GENES> {
-    robot: u8,
+    robot: u16,
     identity: Identity,
     network: Network<S, N>,
     pattern: Pattern<S>,
@@ -66,6 +66,7 @@ pub struct Controller<S, const N: usize = DEFAULT_GENES> {
     motion: Motion<S>,
     drive: Drive<S>,
     avoidance: Avoidance<S>,
+    fix: Option<Fix>,
     tick: u32,
 }
 
@@ -75,7 +76,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
     /// # Errors
     /// See [`LoadError`].
     #[inline(never)]
-    pub fn new(blob: &Blob<N>, robot: u8) -> Result<Self, LoadError> {
+    pub fn new(blob: &Blob<N>, robot: u16) -> Result<Self, LoadError> {
         let network = blob.network.cast();
         let pattern = Pattern::of(&network, S::from_f32(blob.level_fraction)).map_err(LoadError::NoPattern)?;
         let field = blob.field.field(blob.scale);
@@ -93,13 +94,14 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             motion: Motion::new(&blob.gains, ring_radius, S::from_ratio(1, i32::from(TICKS_PER_SECOND))),
             drive: Drive::new(S::from_f32(blob.gains.turn)),
             avoidance: Avoidance::new(S::from_f32(blob.gains.cruise)),
+            fix: None,
             tick: 0,
         })
     }
 
     /// The same controller for another robot of the swarm, which saves loading the blob once more.
     #[must_use]
-    pub fn on_robot(self, robot: u8) -> Self {
+    pub fn on_robot(self, robot: u16) -> Self {
         Controller { robot, ..self }
     }
 
@@ -114,22 +116,24 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         self.expression.morphogen(&self.network)
     }
 
-    /// One control tick, every 1/32 s: perceive, express genes, move.
+    /// One control tick, every 1/32 s: perceive, express genes, move. Before the first fix the robot stands still and is silent.
     ///
     /// # Errors
-    /// [`PerceptError`] if no robot can be where and as the percept says. Then this was no tick: nothing has changed, and
+    /// [`PerceptError`] if no robot can perceive this. Then this was no tick: nothing has changed, and
     /// the robot is to stop its wheels.
     pub fn tick(&mut self, percept: &Percept) -> Result<Command, PerceptError> {
         percept.check()?;
         self.tick = self.tick.wrapping_add(1);
-        let [east, north] = percept.position.map(S::from_millionths);
+        self.fix = percept.fix.or(self.fix);
+        let Some(Fix { position, heading, age_ms: _ }) = self.fix else { return Ok(Command::default()) };
+        let [east, north] = position.map(S::from_millionths);
         let here = Vector::new(east, north);
         self.knowledge.update(percept, here, self.robot);
-        let heading = heading(percept.heading);
+        let heading = self::heading(heading);
         let wanted = self.wanted_velocity(here, percept);
         let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge);
         let (left, right) = self.drive.wheels(velocity, heading);
-        Ok(Command { left, right, broadcast: self.broadcast(percept) })
+        Ok(Command { left, right, broadcast: self.broadcast(percept, here) })
     }
 
     fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept) -> Vector<S> {
@@ -162,15 +166,13 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         percept.targets.get(turn).map(|sighting| sighting.target)
     }
 
-    fn broadcast(&self, percept: &Percept) -> Option<Message> {
+    fn broadcast(&self, percept: &Percept, here: Point<S>) -> Option<Message> {
         let turn = self.tick.wrapping_add(u32::from(self.robot));
         if !turn.is_multiple_of(BROADCAST_PERIOD) {
             return None;
         }
         let (target, obstacles) = self.knowledge.report(turn / BROADCAST_PERIOD, percept);
-        let millimetre = |micrometres: i32| (micrometres / 1000).clamp(-32_767, 32_767) as i16;
-        let [x, y] = percept.position.map(millimetre);
-        Some(Message { sender: self.robot, position: Millimetres { x, y }, target, obstacles })
+        Some(Message { sender: self.robot, position: millimetres(here), target, obstacles })
     }
 }
 

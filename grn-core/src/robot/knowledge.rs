@@ -4,7 +4,7 @@ use super::epuck2::TICKS_PER_SECOND;
 use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
-use super::percept::{MAX_TARGETS, Percept, Sighting};
+use super::percept::{Heard, MAX_TARGETS, Percept, Sighting};
 use super::position::{Millimetres, metres, millimetres};
 use crate::bounded::filled;
 use crate::geometry::{Point, Vector};
@@ -73,7 +73,7 @@ impl<S: Scalar> Knowledge<S> {
     /// little: walls stand still, so the other points can be learned when they are told again.
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
-    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u8) {
+    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16) {
         let here = millimetres(here);
         self.grow_older(here);
         for sighting in &percept.targets {
@@ -83,7 +83,7 @@ impl<S: Scalar> Knowledge<S> {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
         }
         let mut own_messages = 0;
-        for message in &percept.heard {
+        for Heard { message, age_ms: _ } in &percept.heard {
             if message.sender == own {
                 own_messages += 1;
                 continue;
@@ -96,9 +96,9 @@ impl<S: Scalar> Knowledge<S> {
         let turn = self.whose_turn(percept.heard.len() - own_messages);
         let chosen = match own_messages {
             0 => percept.heard.get(turn),
-            _ => percept.heard.iter().filter(|message| message.sender != own).nth(turn),
+            _ => percept.heard.iter().filter(|heard| heard.message.sender != own).nth(turn),
         };
-        for report in chosen.into_iter().flat_map(|message| &message.obstacles) {
+        for report in chosen.into_iter().flat_map(|heard| &heard.message.obstacles) {
             self.obstacles.learn(report);
         }
         self.obstacles.find_near();

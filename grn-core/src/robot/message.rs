@@ -36,7 +36,7 @@ pub struct ObstacleReport {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Message {
     /// Number of the robot that sends, unique in the swarm.
-    pub sender: u8,
+    pub sender: u16,
     /// Where it is.
     pub position: Millimetres,
     /// One of the targets it knows, in turn.

@@ -21,5 +21,5 @@ pub mod slots;
 
 pub use controller::{Controller, LoadError};
 pub use message::{Message, ObstacleReport, TargetReport};
-pub use percept::{Command, Percept, PerceptError, Sighting};
+pub use percept::{Command, Fix, Heard, Percept, PerceptError, Sighting};
 pub use position::Millimetres;

@@ -20,7 +20,7 @@ const CLOSE: u32 = 130 * 130;
 /// Another robot nearby.
 #[derive(Clone, Copy, Debug)]
 pub struct Neighbour<S> {
-    robot: u8,
+    robot: u16,
     /// Where it was when last heard, metres.
     pub position: Point<S>,
     /// How far away it was then, squared, mm².
@@ -40,7 +40,7 @@ impl<S> Neighbour<S> {
 #[derive(Clone, Debug)]
 pub struct Neighbours<S> {
     known: Vec<Neighbour<S>, MAX_NEIGHBOURS>,
-    /// By robot number: which of the known it is, if it is one of them.
+    /// By the low byte of a robot's number: which of the known to compare with first.
     places: [u8; 1 << u8::BITS],
     farthest: usize,
     largest: u32,
@@ -56,7 +56,7 @@ impl<S: Scalar> Neighbours<S> {
     }
 
     /// Hears `robot` from `place` in tick `now`, itself at `here`.
-    pub fn meet(&mut self, robot: u8, place: Millimetres, here: Millimetres, now: u32) {
+    pub fn meet(&mut self, robot: u16, place: Millimetres, here: Millimetres, now: u32) {
         let square = squared_distance(place, here);
         let index = match self.index_of(robot) {
             Some(index) => index,
@@ -93,13 +93,17 @@ impl<S: Scalar> Neighbours<S> {
         self.measure();
     }
 
-    fn index_of(&self, robot: u8) -> Option<usize> {
-        let index = self.places.get(usize::from(robot)).copied().map(usize::from)?;
-        self.known.get(index).is_some_and(|known| known.robot == robot).then_some(index)
+    fn index_of(&self, robot: u16) -> Option<usize> {
+        let is_it = |known: &Neighbour<S>| known.robot == robot;
+        let index = self.places.get(usize::from(robot as u8)).copied().map(usize::from)?;
+        if self.known.get(index).is_some_and(is_it) {
+            return Some(index);
+        }
+        self.known.iter().position(is_it)
     }
 
-    fn note(&mut self, robot: u8, index: usize) {
-        if let Some(place) = self.places.get_mut(usize::from(robot)) {
+    fn note(&mut self, robot: u16, index: usize) {
+        if let Some(place) = self.places.get_mut(usize::from(robot as u8)) {
             *place = index as u8;
         }
     }
@@ -115,12 +119,12 @@ mod tests {
 
     const HERE: Millimetres = Millimetres { x: 0, y: 0 };
 
-    fn meet(neighbours: &mut Neighbours<f32>, robot: u8, x: i16, now: u32) {
+    fn meet(neighbours: &mut Neighbours<f32>, robot: u16, x: i16, now: u32) {
         neighbours.meet(robot, Millimetres { x, y: 0 }, HERE, now);
     }
 
-    fn robots(neighbours: &Neighbours<f32>) -> std::vec::Vec<u8> {
-        let mut robots: std::vec::Vec<u8> = neighbours.known().iter().map(|known| known.robot).collect();
+    fn robots(neighbours: &Neighbours<f32>) -> std::vec::Vec<u16> {
+        let mut robots: std::vec::Vec<u16> = neighbours.known().iter().map(|known| known.robot).collect();
         robots.sort_unstable();
         robots
     }
@@ -129,7 +133,7 @@ mod tests {
     fn the_nearest_are_kept_where_they_were_last_heard() {
         let mut neighbours = Neighbours::new();
         for robot in (0..=255).rev() {
-            meet(&mut neighbours, robot, 100 + i16::from(robot), 1);
+            meet(&mut neighbours, robot, 100 + robot as i16, 1);
         }
         assert_eq!(robots(&neighbours), [0, 1, 2, 3, 4, 5, 6, 7]);
         // The farthest comes nearer, so that another one is the farthest; then the nearest goes away.
@@ -141,6 +145,24 @@ mod tests {
         assert_eq!(robots(&neighbours), [1, 2, 3, 4, 5, 7, 9, 200]);
         let seven = neighbours.known().iter().find(|known| known.robot == 7).map(|known| known.position.x);
         assert_eq!(seven, Some(0.02));
+    }
+
+    #[test]
+    fn robots_whose_numbers_end_in_the_same_byte_are_told_apart() {
+        let mut neighbours = Neighbours::new();
+        let alike = [5, 0x105, 0xff05, 0x205, 0x305, 0x405, 0x505, 0x605];
+        for (robot, x) in alike.into_iter().zip([100, 110, 120, 130, 140, 150, 160, 170]) {
+            meet(&mut neighbours, robot, x, 1);
+        }
+        let mut sorted = alike.to_vec();
+        sorted.sort_unstable();
+        assert_eq!(robots(&neighbours), sorted);
+        // One of them moves, one is crowded out by another number, and a third is still the same.
+        meet(&mut neighbours, 0x105, 20, 2);
+        meet(&mut neighbours, 7, 30, 2);
+        meet(&mut neighbours, 5, 40, 2);
+        sorted.retain(|&robot| robot != 0x605);
+        assert_eq!(robots(&neighbours), [&[5, 7], &sorted[1..]].concat());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What the controller is told each tick and what it answers.
 
-use super::epuck2::PROXIMITY_SENSORS;
+use super::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
 use super::message::Message;
 use super::position::Millimetres;
 use core::fmt;
@@ -23,6 +23,33 @@ pub const HEADING_UNIT: i16 = 1 << 14;
 /// that of a table of sines, or of a heading that is turned by small angles again and again. A wrong unit (degrees, 2^-15,
 /// thousandths) or a heading that was never set is much farther off.
 pub const HEADING_TOLERANCE: i16 = HEADING_UNIT / 32;
+/// The time from one tick to the next that gains and blobs are made for, microseconds: 1/32 s.
+pub const NOMINAL_TICK_US: u32 = 1_000_000 / TICKS_PER_SECOND as u32;
+/// The shortest time from one tick to the next, microseconds.
+pub const SHORTEST_TICK_US: u32 = 1_000;
+/// The longest time from one tick to the next, microseconds.
+pub const LONGEST_TICK_US: u32 = 250_000;
+
+/// What a localisation system says of the robot: where it was and how it looked when that was measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fix {
+    /// Own position in the world, micrometres, within ±[`MAX_POSITION`].
+    pub position: [i32; 2],
+    /// Own heading as (cos, sin), in units of 2^-14: a vector of length [`HEADING_UNIT`], give or take
+    /// [`HEADING_TOLERANCE`].
+    pub heading: [i16; 2],
+    /// How long ago it was measured, milliseconds; 0 if that is not known.
+    pub age_ms: u16,
+}
+
+/// A message received by radio.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Heard {
+    /// What was said.
+    pub message: Message,
+    /// How long it was on its way as far as the radio knows, milliseconds; 0 if that is not known.
+    pub age_ms: u16,
+}
 
 /// A target seen with the robot's own sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,11 +66,11 @@ pub struct Sighting {
 /// with [`Percept::nothing`], or name every field, so that the compiler finds the places that a new field concerns.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Percept {
-    /// Own position in the world, micrometres, within ±[`MAX_POSITION`].
-    pub position: [i32; 2],
-    /// Own heading as (cos, sin), in units of 2^-14: a vector of length [`HEADING_UNIT`], give or take
-    /// [`HEADING_TOLERANCE`].
-    pub heading: [i16; 2],
+    /// Where the robot is, if the localisation system has said so since the last tick.
+    pub fix: Option<Fix>,
+    /// Time since the last tick, microseconds, from [`SHORTEST_TICK_US`] to [`LONGEST_TICK_US`]; [`NOMINAL_TICK_US`] if
+    /// ticks come on time.
+    pub elapsed_us: u32,
     /// Free distance in front of each proximity sensor, from the body's edge, in units of 0.1 mm; `u16::MAX` when
     /// nothing is in range. Bearings as in [`PROXIMITY_BEARINGS_DEG`](super::epuck2::PROXIMITY_BEARINGS_DEG).
     pub proximity: [u16; PROXIMITY_SENSORS],
@@ -52,7 +79,7 @@ pub struct Percept {
     /// Points on obstacles seen with own sensors (mother robots).
     pub obstacles: Vec<Millimetres, MAX_SEEN_OBSTACLES>,
     /// Messages received since the last tick. The robot's own, which some radios give back, are ignored.
-    pub heard: Vec<Message, MAX_HEARD>,
+    pub heard: Vec<Heard, MAX_HEARD>,
 }
 
 /// What a robot does until the next tick.
@@ -79,14 +106,19 @@ pub enum PerceptError {
         /// The heading, units of 2^-14.
         heading: [i16; 2],
     },
+    /// The time since the last tick is out of range.
+    Elapsed {
+        /// The time, microseconds.
+        elapsed_us: u32,
+    },
 }
 
 impl Percept {
-    /// The percept of a robot at the origin that looks east, and perceives nothing around it.
+    /// The percept of a robot that perceives nothing, not even where it is, in a tick that came on time.
     pub const fn nothing() -> Self {
         Percept {
-            position: [0; 2],
-            heading: [HEADING_UNIT, 0],
+            fix: None,
+            elapsed_us: NOMINAL_TICK_US,
             proximity: [u16::MAX; PROXIMITY_SENSORS],
             targets: Vec::new(),
             obstacles: Vec::new(),
@@ -94,12 +126,22 @@ impl Percept {
         }
     }
 
-    /// Whether a robot can be where and as this percept says.
+    /// Whether a robot can perceive this.
     ///
     /// # Errors
     /// [`PerceptError`].
     pub fn check(&self) -> Result<(), PerceptError> {
-        let Percept { position, heading, .. } = *self;
+        let elapsed_us = self.elapsed_us;
+        if !(SHORTEST_TICK_US..=LONGEST_TICK_US).contains(&elapsed_us) {
+            return Err(PerceptError::Elapsed { elapsed_us });
+        }
+        self.fix.as_ref().map_or(Ok(()), Fix::check)
+    }
+}
+
+impl Fix {
+    fn check(&self) -> Result<(), PerceptError> {
+        let Fix { position, heading, age_ms: _ } = *self;
         let far = |coordinate: i32| coordinate.unsigned_abs() > MAX_POSITION as u32;
         let [east, north] = position;
         if far(east) || far(north) {
@@ -129,6 +171,11 @@ impl fmt::Display for PerceptError {
                 "the robot's heading ({x}, {y}) is not a unit vector: give its cosine and sine times {HEADING_UNIT}; the \
                  length may be {HEADING_TOLERANCE} off"
             ),
+            PerceptError::Elapsed { elapsed_us } => write!(
+                f,
+                "{elapsed_us} µs since the last tick are out of range: give {SHORTEST_TICK_US} to {LONGEST_TICK_US}, \
+                 {NOMINAL_TICK_US} if ticks come on time"
+            ),
         }
     }
 }
@@ -140,19 +187,23 @@ mod tests {
     use super::*;
     use std::string::ToString;
 
+    fn fixed(position: [i32; 2], heading: [i16; 2]) -> Result<(), PerceptError> {
+        Percept { fix: Some(Fix { position, heading, age_ms: 0 }), ..Percept::nothing() }.check()
+    }
+
     fn looking(heading: [i16; 2]) -> Result<(), PerceptError> {
-        Percept { heading, ..Percept::nothing() }.check()
+        fixed([0; 2], heading)
     }
 
     fn at(position: [i32; 2]) -> Result<(), PerceptError> {
-        Percept { position, ..Percept::nothing() }.check()
+        fixed(position, [HEADING_UNIT, 0])
     }
 
     #[test]
     fn nothing_is_a_percept_in_which_nothing_is_near() {
         let nothing = Percept::nothing();
         assert_eq!(nothing.check(), Ok(()));
-        assert_eq!(nothing.proximity, [u16::MAX; 8]);
+        assert_eq!((nothing.fix, nothing.elapsed_us, nothing.proximity), (None, 31_250, [u16::MAX; 8]));
         assert!(nothing.targets.is_empty() && nothing.obstacles.is_empty() && nothing.heard.is_empty());
     }
 
@@ -189,5 +240,18 @@ mod tests {
         }
         let text = PerceptError::Position { position: [i32::MAX, 5] }.to_string();
         assert!(text.contains("(2147483647, 5)") && text.contains("micrometres"), "{text}");
+    }
+
+    #[test]
+    fn times_between_ticks_that_no_control_loop_has_are_refused() {
+        let after = |elapsed_us: u32| Percept { elapsed_us, ..Percept::nothing() }.check();
+        for elapsed_us in [1_000, 31_250, 100_000, 250_000] {
+            assert_eq!(after(elapsed_us), Ok(()));
+        }
+        for elapsed_us in [0, 31, 999, 250_001, u32::MAX] {
+            assert_eq!(after(elapsed_us), Err(PerceptError::Elapsed { elapsed_us }));
+        }
+        let text = after(31).unwrap_err().to_string();
+        assert!(text.contains("31 µs") && text.contains("31250"), "{text}");
     }
 }

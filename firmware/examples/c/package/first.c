@@ -55,6 +55,8 @@ int main(int argc, char **argv) {
     if (!check(grn_load(&controller, sizeof controller, blob, length, GRN_NUMBER_F32, 1))) return 1;
     for (tick = 0; tick < GRN_TICKS_PER_SECOND; tick++) {
         GrnPercept percept = GRN_PERCEPT_NOTHING;
+        percept.has_fix = 1;
+        percept.fix.heading[0] = 16384;  // at the origin, looking east
         percept.target_count = 1;
         percept.targets[0].position.x = 900;
         if (!check(grn_tick(&controller, &percept, &command))) return 1;

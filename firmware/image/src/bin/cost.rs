@@ -17,7 +17,7 @@
 //! | rk4-step | one integration step, after `rest`; a tick of the shipped blobs has one |
 //! | rk4-step-more | each further step in the same call |
 //!
-//! Then come those of the longest message on its way through the radio, 36 bytes: packed, unpacked, and cut into fragments
+//! Then come those of the longest message on its way through the radio, 37 bytes: packed, unpacked, and cut into fragments
 //! and put together again for payloads of 20 and of 2 bytes.
 #![no_std]
 #![no_main]
@@ -30,7 +30,7 @@ use grn_core::network::{DEFAULT_GENES, Network};
 use grn_core::pattern::Pattern;
 use grn_core::robot::radio::packed::{self, Packed};
 use grn_core::robot::radio::{Assembler, Fragment, Fragments};
-use grn_core::robot::{Controller, Percept};
+use grn_core::robot::{Controller, Heard, Percept};
 use grn_core::scalar::{Dual, Q8_24, Scalar};
 use grn_firmware::board::{counter, print, stack_used};
 use grn_firmware::text::decimal;
@@ -77,7 +77,7 @@ fn measure_radio() -> bool {
         print("\n");
     };
     let everything = scene::everything();
-    let Some(message) = everything.heard.first() else { return false };
+    let Some(Heard { message, .. }) = everything.heard.first() else { return false };
     let mut packed = Packed::new();
     show("write", instructions(&mut || packed = black_box(packed::write(black_box(message)))));
     let mut unpacked = None;

@@ -11,7 +11,7 @@
 use heapless::Vec;
 
 /// The most bytes of version, sequence, operation, payload and CRC together.
-pub const MAX_CONTENT: usize = 512;
+pub const MAX_CONTENT: usize = 576;
 /// The most bytes of a frame on the wire: one more per started 254 bytes, and both zeros.
 pub const MAX_WIRE: usize = MAX_CONTENT + MAX_CONTENT / 254 + 1 + 2;
 

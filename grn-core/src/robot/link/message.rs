@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// The protocol version this build speaks.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// The most bytes of a blob in one [`Chunk`]; a multiple of 8.
 pub const MAX_CHUNK: usize = 64;
 /// Added to a request's operation in its response.
@@ -108,7 +108,7 @@ pub struct RollBack {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reset {
     /// Number of the robot in its swarm.
-    pub robot: u8,
+    pub robot: u16,
 }
 
 /// What a robot is.

@@ -107,6 +107,8 @@ pub enum PerceptFault {
     Position,
     /// The heading is not a unit vector.
     Heading,
+    /// The time since the last tick is out of range.
+    Elapsed,
 }
 
 impl From<BlobError> for BlobFault {
@@ -172,6 +174,7 @@ impl From<PerceptError> for Refusal {
         Refusal::Percept(match error {
             PerceptError::Position { .. } => PerceptFault::Position,
             PerceptError::Heading { .. } => PerceptFault::Heading,
+            PerceptError::Elapsed { .. } => PerceptFault::Elapsed,
         })
     }
 }
@@ -216,6 +219,9 @@ impl fmt::Display for Refusal {
             }
             Refusal::Percept(PerceptFault::Heading) => {
                 "the percept's heading is not a unit vector: give cosine and sine in units of 2^-14"
+            }
+            Refusal::Percept(PerceptFault::Elapsed) => {
+                "the percept's time since the last tick is out of range: give 1000 to 250000 microseconds"
             }
             Refusal::SequenceUsedUp => {
                 "the blob in charge has the highest upload number, 4294967295, so no upload could be newer: roll it back, or \

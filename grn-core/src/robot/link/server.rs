@@ -92,7 +92,7 @@ struct Robot<F, S> {
     slots: Slots<F>,
     controller: Option<Controller<S>>,
     ticks: u16,
-    number: u8,
+    number: u16,
     name: String<24>,
     number_type: NumberType,
 }
@@ -157,14 +157,14 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     }
 
     #[inline(never)]
-    fn reset(&mut self, number: u8) -> Result<(), Refusal> {
+    fn reset(&mut self, number: u16) -> Result<(), Refusal> {
         let blob = self.slots.blob_in_charge();
         let blob = blob.as_ref().map_err(|&error| error)?.as_ref().ok_or(Refusal::NoController)?;
         self.load(blob, number)
     }
 
     #[inline(never)]
-    fn load(&mut self, blob: &Blob, number: u8) -> Result<(), Refusal> {
+    fn load(&mut self, blob: &Blob, number: u16) -> Result<(), Refusal> {
         match Controller::new(blob, number) {
             Ok(controller) => self.controller = Some(controller),
             Err(error) => return Err(error.into()),

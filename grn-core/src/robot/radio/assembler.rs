@@ -25,7 +25,7 @@ const OVERTAKING: u32 = 4;
 /// Ticks for which duplicates of a complete message are known as such. A sender uses a number again after 16 ticks.
 const DUPLICATES: u32 = 8;
 
-/// Puts fragments of messages together; takes 672 bytes.
+/// Puts fragments of messages together; takes 704 bytes.
 ///
 /// It is made of integers only, and zeros are one that has heard nothing.
 #[derive(Clone, Debug, Default)]
@@ -85,7 +85,7 @@ impl Assembler {
             let _ = partial.put(piece.data);
         }
         let packed = partial.packed()?;
-        let message = read(packed).ok().filter(|message| message.sender & piece.key.known == piece.key.sender);
+        let message = read(packed).ok().filter(|message| message.sender as u8 & piece.key.known == piece.key.sender);
         match message {
             Some(_) => partial.complete = 1,
             None => *partial = Partial::default(),
@@ -183,7 +183,7 @@ mod tests {
     use std::vec::Vec;
 
     /// A message with all there can be in one.
-    fn longest(sender: u8) -> Message {
+    fn longest(sender: u16) -> Message {
         let position = Millimetres { x: 12_345, y: -23_456 };
         let target = Some(TargetReport { target: 3, position, velocity: [-100, 100], age: 7 });
         let obstacles = filled((0..4).map(|age| ObstacleReport { position: Millimetres { x: -1, y: 900 }, age }));
@@ -201,19 +201,19 @@ mod tests {
     #[test]
     fn fragments_have_exactly_these_bytes() {
         let message =
-            Message { sender: 7, position: Millimetres { x: 258, y: -259 }, target: None, obstacles: filled([]) };
-        // 10 07 02 01 fd fe and the checksum 54 c2.
-        let expected: [&[u8]; 3] = [&[7, 0x40, 0x10, 7, 2], &[7, 0x43, 1, 0xfd, 0xfe], &[7, 0x46, 0x54, 0xc2]];
+            Message { sender: 0x407, position: Millimetres { x: 258, y: -259 }, target: None, obstacles: filled([]) };
+        // 20 07 04 02 01 fd fe and the checksum 6b 6f.
+        let expected: [&[u8]; 3] = [&[7, 0x40, 0x20, 7, 4], &[7, 0x43, 2, 1, 0xfd], &[7, 0x46, 0xfe, 0x6b, 0x6f]];
         assert_eq!(cut(&message, 5, 1), expected);
         let small = cut(&message, 2, 1);
-        assert_eq!(small.len(), 11);
-        assert_eq!(small[..3], [[0x10, 0xf0], [0x5c, 0xf0], [0xa0, 0xf0]].map(Fragment::from));
+        assert_eq!(small.len(), 12);
+        assert_eq!(small[..3], [[0x20, 0xf0], [0x5c, 0xf0], [0x80, 0xf0]].map(Fragment::from));
     }
 
     #[test]
     fn the_longest_message_takes_so_many_fragments() {
-        let counts = [2, 3, 4, 8, 20, 30, 32, 38, 500].map(|payload| cut(&longest(9), payload, 0).len());
-        assert_eq!(counts, [48, 36, 18, 6, 2, 2, 2, 1, 1]);
+        let counts = [2, 3, 4, 8, 20, 21, 30, 32, 38, 39, 500].map(|payload| cut(&longest(9), payload, 0).len());
+        assert_eq!(counts, [50, 37, 19, 7, 3, 2, 2, 2, 2, 1, 1]);
         assert_eq!(cut(&longest(9), 500, 0)[0].len(), MAX_FRAGMENT);
         for payload in [2, 3, 20] {
             let fragments = Fragments::new(&longest(9), payload, 5).unwrap();
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn an_assembler_takes_as_much_memory_as_it_says() {
-        assert_eq!(size_of::<Assembler>(), 672);
+        assert_eq!(size_of::<Assembler>(), 704);
     }
 
     #[test]
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn in_a_crowd_what_is_begun_is_completed() {
         let mut assembler = Assembler::new();
-        let crowd: Vec<Vec<Fragment>> = (0..20).map(|sender| cut(&longest(sender), 20, 0)).collect();
+        let crowd: Vec<Vec<Fragment>> = (0..20).map(|sender| cut(&longest(sender), 30, 0)).collect();
         let firsts: Vec<Fragment> = crowd.iter().map(|fragments| fragments[0].clone()).collect();
         let seconds: Vec<Fragment> = crowd.iter().map(|fragments| fragments[1].clone()).collect();
         assert_eq!(receive(&mut assembler, 0, &firsts), []);
@@ -274,7 +274,7 @@ mod tests {
         let sent = proptest::collection::vec((message(), 2_usize..=40, any::<u8>()), 1..=MESSAGES);
         let fragments = sent.prop_map(|sent| {
             // Different in the three bits that the smallest radio has.
-            let named = |(sender, (message, payload, number)): (u8, (Message, usize, u8))| {
+            let named = |(sender, (message, payload, number)): (u16, (Message, usize, u8))| {
                 (Message { sender: message.sender & !7 | sender, ..message }, payload, number)
             };
             let sent: Vec<_> = (0..).zip(sent).map(named).collect();
@@ -333,11 +333,13 @@ mod tests {
                     }
                 }
                 let mut assembler = Assembler::new();
-                // Alone, a fragment with another number is the message all the same.
+                // Alone, a fragment with another number is the message all the same, and so it is with other bits behind
+                // its end.
                 let first = receive(&mut assembler, 0, &flipped);
-                prop_assert!(first.is_empty() || fragments.len() == 1 && first == [message.clone()], "bit {}: {:?}", bit, first);
+                prop_assert!(first.is_empty() || (fragments.len() == 1 || payload == 2) && first == [message.clone()], "bit {}: {:?}", bit, first);
                 let again: Vec<Message> = (1..=2).flat_map(|tick| receive(&mut assembler, tick, &fragments)).collect();
-                prop_assert!(!again.is_empty() && again.iter().all(|got| *got == message), "bit {}: {:?}", bit, again);
+                prop_assert!(again.iter().all(|got| *got == message), "bit {}: {:?}", bit, again);
+                prop_assert!(!(first.is_empty() && again.is_empty()), "bit {}", bit);
             }
         }
 

@@ -1,8 +1,8 @@
 //! Packed messages cut into pieces for radios with small payloads.
 //!
 //! ```text
-//! payload of 2 bytes           a little-endian number: data (6 bits), place (6), number (1), sender (3)
-//! payload of 3 bytes or more   sender (8 bits), place (6 bits) and number (2), data (1 byte or more)
+//! payload of 2 bytes           a little-endian number: data (6 bits), place (6), number (1), sender (its lowest 3)
+//! payload of 3 bytes or more   sender (its lowest 8 bits), place (6 bits) and number (2), data (1 byte or more)
 //! ```
 //!
 //! The place is where the data begin in the packed message: in units of 6 bits in fragments of 2 bytes, else in bytes. So
@@ -30,7 +30,7 @@ const NUMBER_SHIFT: u32 = 6;
 const SMALL_DATA: usize = 6;
 
 /// More fragments than this no message has.
-const NO_MORE: usize = MAX_PACKED * 8 / SMALL_DATA;
+const NO_MORE: usize = (MAX_PACKED * 8).div_ceil(SMALL_DATA);
 
 /// A radio's payload is too small for fragments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Messages as radios carry them: packed into at most 36 bytes with a checksum, whole or in fragments.
+//! Messages as radios carry them: packed into at most 37 bytes with a checksum, whole or in fragments.
 //!
 //! [`packed`] turns a [`Message`](super::Message) into bytes and back. [`fragments`] cuts these bytes for radios whose
 //! payload is smaller, down to 2 bytes, and [`Assembler`] puts fragments together that were lost, doubled or have

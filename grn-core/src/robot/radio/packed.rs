@@ -7,7 +7,7 @@ use core::fmt;
 use heapless::Vec;
 
 /// The version of the packed form.
-pub const PACKED_VERSION: u8 = 1;
+pub const PACKED_VERSION: u8 = 2;
 /// The most bytes of a packed message.
 pub const MAX_PACKED: usize = HEAD + TARGET + MAX_REPORTED_OBSTACLES * OBSTACLE + CRC_BYTES;
 /// The fewest.
@@ -17,7 +17,7 @@ pub const MIN_PACKED: usize = HEAD + CRC_BYTES;
 pub type Packed = Vec<u8, MAX_PACKED>;
 
 /// First byte, sender and position.
-const HEAD: usize = 6;
+const HEAD: usize = 7;
 const TARGET: usize = 8;
 const OBSTACLE: usize = 5;
 const CRC_BYTES: usize = 2;
@@ -80,7 +80,8 @@ pub fn write(message: &Message) -> Packed {
     // There is room for the longest message.
     let mut put = |bytes: &[u8]| _ = packed.extend_from_slice(bytes);
     let [x0, x1, y0, y1] = bytes_of(*position);
-    put(&[first, *sender, x0, x1, y0, y1]);
+    let [s0, s1] = sender.to_le_bytes();
+    put(&[first, s0, s1, x0, x1, y0, y1]);
     if let Some(TargetReport { target, position, velocity: [east, north], age }) = *target {
         let [x0, x1, y0, y1] = bytes_of(position);
         put(&[target, x0, x1, y0, y1, east as u8, north as u8, age]);
@@ -108,7 +109,7 @@ pub fn read(bytes: &[u8]) -> Result<Message, PackedError> {
     if CRC.checksum(body) != u16::from_le_bytes(*crc) {
         return Err(PackedError::Damaged);
     }
-    let ([first, sender, position @ ..], mut rest) = body.split_first_chunk::<HEAD>().ok_or(wrong_length)?;
+    let ([first, s0, s1, position @ ..], mut rest) = body.split_first_chunk::<HEAD>().ok_or(wrong_length)?;
     let found = first >> VERSION_SHIFT;
     if found != PACKED_VERSION {
         return Err(PackedError::Version { found });
@@ -128,7 +129,8 @@ pub fn read(bytes: &[u8]) -> Result<Message, PackedError> {
     let point =
         |&[x0, x1, y0, y1, age]: &[u8; OBSTACLE]| ObstacleReport { position: position_of([x0, x1, y0, y1]), age };
     let obstacles = filled(points.iter().map(point));
-    Ok(Message { sender: *sender, position: position_of(*position), target, obstacles })
+    let sender = u16::from_le_bytes([*s0, *s1]);
+    Ok(Message { sender, position: position_of(*position), target, obstacles })
 }
 
 fn bytes_of(Millimetres { x, y }: Millimetres) -> [u8; 4] {
@@ -157,7 +159,7 @@ pub(super) mod tests {
             target.prop_map(|(target, position, velocity, age)| TargetReport { target, position, velocity, age });
         let obstacle = (position(), any::<u8>()).prop_map(|(position, age)| ObstacleReport { position, age });
         let obstacles = proptest::collection::vec(obstacle, 0..=MAX_REPORTED_OBSTACLES);
-        (any::<u8>(), position(), proptest::option::of(target), obstacles).prop_map(
+        (any::<u16>(), position(), proptest::option::of(target), obstacles).prop_map(
             |(sender, position, target, obstacles)| Message { sender, position, target, obstacles: filled(obstacles) },
         )
     }
@@ -169,17 +171,17 @@ pub(super) mod tests {
     /// The bytes of `docs/messages.md`.
     #[test]
     fn messages_have_exactly_these_bytes() {
-        let mut message = Message { sender: 7, position: at(258, -259), target: None, obstacles: Vec::new() };
-        assert_eq!(write(&message), [0x10, 7, 0x02, 0x01, 0xfd, 0xfe, 0x54, 0xc2]);
+        let mut message = Message { sender: 0x407, position: at(258, -259), target: None, obstacles: Vec::new() };
+        assert_eq!(write(&message), [0x20, 7, 4, 0x02, 0x01, 0xfd, 0xfe, 0x6b, 0x6f]);
         message.target = Some(TargetReport { target: 1, position: at(-2, 300), velocity: [-5, 6], age: 200 });
         message.obstacles = filled([ObstacleReport { position: at(1000, -1000), age: 3 }]);
         let expected = [
-            0x19, 7, 0x02, 0x01, 0xfd, 0xfe, 1, 0xfe, 0xff, 0x2c, 0x01, 0xfb, 6, 200, 0xe8, 0x03, 0x18, 0xfc, 3, 0x69,
-            0x9c,
+            0x29, 7, 4, 0x02, 0x01, 0xfd, 0xfe, 1, 0xfe, 0xff, 0x2c, 0x01, 0xfb, 6, 200, 0xe8, 0x03, 0x18, 0xfc, 3,
+            0x0d, 0xc3,
         ];
         assert_eq!(write(&message), expected);
         message.obstacles = filled([ObstacleReport { position: at(1000, -1000), age: 3 }; 4]);
-        assert_eq!((write(&message).len(), MAX_PACKED), (36, 36));
+        assert_eq!((write(&message).len(), MAX_PACKED), (37, 37));
     }
 
     #[test]
@@ -192,18 +194,18 @@ pub(super) mod tests {
             bytes.extend(crc);
             bytes
         };
-        let body = &write(&message)[1..6];
-        assert_eq!(read(&sealed(0x10, body)), Ok(message));
-        assert_eq!(read(&sealed(0x20, body)), Err(PackedError::Version { found: 2 }));
-        for first in [0x11, 0x14, 0x17, 0x18, 0x1f] {
-            assert_eq!(read(&sealed(first, body)), Err(PackedError::Length { found: 8 }), "{first:x}");
+        let body = &write(&message)[1..7];
+        assert_eq!(read(&sealed(0x20, body)), Ok(message));
+        assert_eq!(read(&sealed(0x10, body)), Err(PackedError::Version { found: 1 }));
+        for first in [0x21, 0x24, 0x27, 0x28, 0x2f] {
+            assert_eq!(read(&sealed(first, body)), Err(PackedError::Length { found: 9 }), "{first:x}");
         }
         // More obstacle points than a message has room for.
-        assert_eq!(read(&sealed(0x15, &[0; 30])), Err(PackedError::Length { found: 33 }));
-        for found in [0, 1, 7, 37, 400] {
+        assert_eq!(read(&sealed(0x25, &[0; 30])), Err(PackedError::Length { found: 33 }));
+        for found in [0, 1, 8, 38, 400] {
             assert_eq!(read(&std::vec![0; found]), Err(PackedError::Length { found }));
         }
-        let text = PackedError::Version { found: 2 }.to_string();
+        let text = PackedError::Version { found: 3 }.to_string();
         assert!(text.contains("update the firmware"), "{text}");
     }
 
@@ -216,7 +218,7 @@ pub(super) mod tests {
         }
 
         #[test]
-        fn every_flipped_bit_is_found_and_every_pair_and_every_missing_or_added_byte(message in message(), second in 0_usize..288) {
+        fn every_flipped_bit_is_found_and_every_pair_and_every_missing_or_added_byte(message in message(), second in 0_usize..296) {
             let packed = write(&message);
             let bits = packed.len() * 8;
             let flipped = |places: &[usize]| {

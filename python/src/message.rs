@@ -44,7 +44,7 @@ impl Message {
         packed::read(data).map(|inner| Message { inner }).map_err(about("Message.unpack"))
     }
 
-    /// At most 36 bytes with a checksum, as radios carry them.
+    /// At most 37 bytes with a checksum, as radios carry them.
     fn pack<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &packed::write(&self.inner))
     }
@@ -52,7 +52,7 @@ impl Message {
     /// Number of the robot that sends.
     #[getter]
     fn sender(&self) -> u16 {
-        self.inner.sender.into()
+        self.inner.sender
     }
 
     /// Where it is, metres.

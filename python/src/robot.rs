@@ -3,10 +3,10 @@
 use crate::blob::Blob;
 use crate::errors::{about, refused};
 use crate::message::Message;
-use crate::units::{TICK, direction, free_distance, micrometres, millimetres, pair};
+use crate::units::{TICK, direction, free_distance, micrometres, microseconds, millimetres, milliseconds, pair};
 use grn_core::robot::epuck2::{METRES_PER_STEP, PROXIMITY_SENSORS, STEPS_PER_TURN};
 use grn_core::robot::percept::{MAX_HEARD, MAX_SEEN_OBSTACLES, MAX_TARGETS};
-use grn_core::robot::{Controller, Percept, Sighting};
+use grn_core::robot::{Controller, Fix, Heard, Percept, Sighting};
 use grn_core::scalar::{NumberType, Q8_24};
 use heapless::Vec;
 use pyo3::prelude::*;
@@ -22,7 +22,7 @@ enum Native {
 #[pyclass(module = "grn")]
 pub struct Robot {
     controller: Native,
-    number: u8,
+    number: u16,
     dtype: NumberType,
 }
 
@@ -69,7 +69,7 @@ impl Command {
 impl Robot {
     #[new]
     #[pyo3(signature = (blob, number=0, dtype="f32"))]
-    fn new(blob: &Blob, number: u8, dtype: &str) -> PyResult<Robot> {
+    fn new(blob: &Blob, number: u16, dtype: &str) -> PyResult<Robot> {
         let dtype = number_type(dtype)?;
         let controller = match dtype {
             NumberType::F32 => Controller::new(&blob.inner, number).map(|controller| Native::F32(controller.into())),
@@ -83,7 +83,7 @@ impl Robot {
     /// Its number, unique in the swarm.
     #[getter]
     fn number(&self) -> u16 {
-        self.number.into()
+        self.number
     }
 
     /// What it computes in: "f32" or "q8.24".
@@ -117,21 +117,15 @@ impl Robot {
         obstacles: Option<&Bound<'_, PyAny>>,
         heard: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Command> {
-        let (Some(position), Some(heading)) = (position, heading) else {
-            return Err(refused("position and heading: this version's controller needs both in every tick"));
-        };
-        if pose_age != 0.0 || elapsed != TICK {
-            return Err(refused("pose_age, elapsed: this version's controller knows only 0 and 1/32 s"));
-        }
         let percept = Percept {
-            position: micrometres("position", pair("position", position)?)?,
-            heading: direction(heading)?,
+            fix: fix(position, heading, pose_age)?,
+            elapsed_us: microseconds("elapsed", elapsed)?,
             proximity: proximity.map_or(Ok([u16::MAX; PROXIMITY_SENSORS]), ring)?,
             targets: targets.map_or(Ok(Vec::new()), sightings)?,
             obstacles: obstacles.map_or(Ok(Vec::new()), |points| {
                 listed("obstacles", points, MAX_SEEN_OBSTACLES, |point| millimetres("obstacles", point))
             })?,
-            heard: heard.map_or(Ok(Vec::new()), |messages| listed("heard", messages, MAX_HEARD, message))?,
+            heard: heard.map_or(Ok(Vec::new()), |messages| listed("heard", messages, MAX_HEARD, hearing))?,
         };
         let command = match &mut self.controller {
             Native::F32(controller) => controller.tick(&percept),
@@ -176,10 +170,27 @@ fn sightings(targets: BTreeMap<u8, Bound<'_, PyAny>>) -> PyResult<Vec<Sighting, 
     Ok(seen)
 }
 
-fn message(value: &Bound<'_, PyAny>) -> PyResult<grn_core::robot::Message> {
-    match value.extract::<Message>() {
-        Ok(message) => Ok(message.inner),
-        Err(_) => Err(refused(format_args!("heard: {value} is no message"))),
+/// A pose, if there is one.
+fn fix(position: Option<&Bound<'_, PyAny>>, heading: Option<f64>, pose_age: f64) -> PyResult<Option<Fix>> {
+    match (position, heading) {
+        (None, None) => Ok(None),
+        (Some(position), Some(heading)) => Ok(Some(Fix {
+            position: micrometres("position", pair("position", position)?)?,
+            heading: direction(heading)?,
+            age_ms: milliseconds("pose_age", pose_age)?,
+        })),
+        _ => Err(refused("position and heading belong together: give both, or neither where the pose is not known")),
+    }
+}
+
+/// A message, or a message with the seconds that it was on its way.
+fn hearing(value: &Bound<'_, PyAny>) -> PyResult<Heard> {
+    if let Ok(message) = value.extract::<Message>() {
+        return Ok(Heard { message: message.inner, age_ms: 0 });
+    }
+    match value.extract::<(Message, f64)>() {
+        Ok((message, age)) => Ok(Heard { message: message.inner, age_ms: milliseconds("heard", age)? }),
+        Err(_) => Err(refused(format_args!("heard: {value} is neither a message nor (message, age in seconds)"))),
     }
 }
 

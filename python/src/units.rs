@@ -43,6 +43,24 @@ pub fn millimetres(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Millimetres
     Ok(Millimetres { x: coordinate(x)?, y: coordinate(y)? })
 }
 
+fn since(what: &str, seconds: f64, units: f64, most: f64) -> PyResult<f64> {
+    let number = (seconds * units).round();
+    if (0.0..=most).contains(&number) {
+        return Ok(number);
+    }
+    Err(refused(format_args!("{what} = {seconds}: must be 0 to {} seconds", most / units)))
+}
+
+/// An age in seconds as milliseconds.
+pub fn milliseconds(what: &str, seconds: f64) -> PyResult<u16> {
+    since(what, seconds, 1e3, f64::from(u16::MAX)).map(|ms| ms as u16)
+}
+
+/// A time in seconds as microseconds.
+pub fn microseconds(what: &str, seconds: f64) -> PyResult<u32> {
+    since(what, seconds, 1e6, f64::from(u32::MAX)).map(|us| us as u32)
+}
+
 /// A place in millimetres as metres.
 pub fn metres(Millimetres { x, y }: Millimetres) -> (f64, f64) {
     (f64::from(x) * 1e-3, f64::from(y) * 1e-3)

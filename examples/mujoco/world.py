@@ -6,8 +6,10 @@ Choices, and why:
   across, wheels of 41 mm, 53 mm apart. Its mass lies low, so that it does not tip when it brakes.
 - Wheels and casters are spheres inside the body: each touches the floor in one point, as the real ones do, and
   nothing but the floor, so that what robots bump into each other and into walls with is the cylinder alone.
-- Steppers do not yield below their torque: each wheel is a velocity servo that is stiff (its time constant is a few
-  milliseconds), with at most 30 mN m.
+- Casters have priority over the floor: in a contact MuJoCo takes the greater friction of the two otherwise, and they would rub.
+- Steppers do not yield below their torque: each wheel is a velocity servo with a time constant of some milliseconds and at
+  most 30 mN m. A geared motor's rotor weighs more at the wheel than the wheel itself; without it (`armature`) the servo and
+  the friction of so light a wheel fight each other, and robots jerk.
 - The physics step is 1/256 s, 8 steps in a control tick of 1/32 s; with half of it the tracks of single robots agree to 0.1 mm.
   Friction cones are elliptic and `impratio` is 10: with MuJoCo's defaults wheels creep sideways.
 - A wall is a row of boxes along the edges of its polygon, inside it.
@@ -31,6 +33,7 @@ WHEEL_MASS = 0.005
 AXLE = 0.053
 WHEEL_DIAMETER = 0.041
 TORQUE = 0.03
+ARMATURE = 1e-4
 STEPS_PER_SECOND = 256
 WALL_THICKNESS = 0.02
 WALL_HEIGHT = 0.1
@@ -110,7 +113,7 @@ def build(
     world = ElementTree.SubElement(root, "worldbody")
     east, north = scenario.region
     floor = {"name": "floor", "type": "plane", "size": f"{east + north} {east + north} 1", "pos": "0 0 0"}
-    ElementTree.SubElement(world, "geom", floor, friction="1 0 0", contype="1", conaffinity="1")
+    ElementTree.SubElement(world, "geom", floor, friction="1 0 0", contype="1", conaffinity="1", solref="0.008 1")
     for number, corners in enumerate(scenario.walls):
         for edge, box in enumerate(_boxes(corners)):
             solid = {"group": str(SOLID), "contype": "2", "conaffinity": "2", "friction": "0.3 0 0"}
@@ -164,11 +167,11 @@ def _robot(
     inertia = {"pos": "0 0 0.015", "mass": str(mass), "diaginertia": f"{across} {across} {about_axis}"}
     ElementTree.SubElement(body, "inertial", inertia)
     for x in (-0.028, 0.028):
-        caster = {"type": "sphere", "size": "0.004", "pos": f"{x} 0 0.0041", "mass": "0", "condim": "1"}
+        caster = {"type": "sphere", "size": "0.004", "pos": f"{x} 0 0.0041", "mass": "0", "condim": "1", "priority": "1"}
         ElementTree.SubElement(body, "geom", caster, contype="0", conaffinity="1", group="2")
     for side, y in (("left", axle / 2), ("right", -axle / 2)):
         wheel = ElementTree.SubElement(body, "body", name=f"{side}-{robot}", pos=f"0 {y} {radius}")
-        ElementTree.SubElement(wheel, "joint", name=f"{side}-{robot}", type="hinge", axis="0 1 0")
+        ElementTree.SubElement(wheel, "joint", name=f"{side}-{robot}", type="hinge", axis="0 1 0", armature=str(ARMATURE))
         tyre = {"type": "sphere", "size": str(radius), "mass": str(WHEEL_MASS), "friction": "1 0 0", "group": "2"}
         ElementTree.SubElement(wheel, "geom", tyre, contype="0", conaffinity="1")
         servo = {"joint": f"{side}-{robot}", "kv": "0.02", "forcerange": f"{-TORQUE} {TORQUE}", "forcelimited": "true"}

@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Optional
+from typing import Any, Mapping, Optional, Sequence
 
 import grn
 import numpy as np
 
 Lab = Mapping[str, Any]
+Place = tuple[float, float]
+# East, north, anticlockwise: metres and radians.
+PoseError = tuple[float, float, float]
 NOISE_LIMIT = 3.5
 
 
@@ -35,7 +38,7 @@ class Draws:
     def normal(self, deviation: float) -> float:
         if deviation == 0.0:
             return 0.0
-        return deviation * float(np.clip(self.generator.normal(), -NOISE_LIMIT, NOISE_LIMIT))
+        return deviation * max(-NOISE_LIMIT, min(NOISE_LIMIT, self.generator.normal()))
 
     def factor(self, gain: float) -> float:
         return 1.0 + gain * float(self.generator.uniform(-1.0, 1.0))
@@ -62,7 +65,7 @@ class Bursts:
 
 @dataclass
 class Fix:
-    position: np.ndarray
+    position: Place
     heading: float
     age: float
 
@@ -76,27 +79,31 @@ class Localisation:
         self.period = 1.0 / self.numbers["rate_hz"]
         self.due = 0.0
         self.gaps = Bursts(self.numbers["dropout"], self.numbers["dropout_s"], self.period, self.draws)
-        self.drift = np.array([self.draws.normal(1.0) for _ in range(3)])
+        self.drifts = self.numbers["drift_m"] > 0.0 or self.numbers["drift_deg"] > 0.0
+        self.drift = [self.draws.normal(1.0) for _ in range(3)]
         self.drift_at = 0.0
-        self.on_its_way: deque[tuple[float, np.ndarray, float]] = deque()
-        self.error = (np.zeros(2), 0.0)
+        self.on_its_way: deque[tuple[float, Place, float]] = deque()
+        self.error: PoseError = (0.0, 0.0, 0.0)
 
-    def measure(self, now: float, position: np.ndarray, heading: float) -> None:
+    def measure(self, now: float, position: Place, heading: float) -> None:
         if now < self.due - 1e-9:
             return
         self.due += self.period
         if self.gaps.next():
             return
         numbers = self.numbers
-        # The exact transition of an Ornstein-Uhlenbeck process of deviation 1.
-        kept = math.exp(-(now - self.drift_at) / numbers["drift_s"])
-        fresh = math.sqrt(1.0 - kept * kept)
-        self.drift = kept * self.drift + fresh * np.array([self.draws.normal(1.0) for _ in range(3)])
-        self.drift_at = now
-        offset = np.array([self.draws.normal(numbers["noise_m"]) for _ in range(2)]) + self.drift[:2] * numbers["drift_m"]
+        if self.drifts:
+            # The exact transition of an Ornstein-Uhlenbeck process of deviation 1.
+            kept = math.exp(-(now - self.drift_at) / numbers["drift_s"])
+            fresh = math.sqrt(1.0 - kept * kept)
+            self.drift = [kept * value + fresh * self.draws.normal(1.0) for value in self.drift]
+            self.drift_at = now
+        east = self.draws.normal(numbers["noise_m"]) + self.drift[0] * numbers["drift_m"]
+        north = self.draws.normal(numbers["noise_m"]) + self.drift[1] * numbers["drift_m"]
         turn = math.radians(self.draws.normal(numbers["noise_deg"]) + self.drift[2] * numbers["drift_deg"])
-        self.error = (offset, turn)
-        self.on_its_way.append((now, position + offset, heading + turn))
+        self.error = (east, north, turn)
+        x, y = position
+        self.on_its_way.append((now, (x + east, y + north), heading + turn))
 
     def newest(self, now: float) -> Optional[Fix]:
         newest = None
@@ -117,21 +124,19 @@ class FarSense:
         self.queue: list[int] = []
 
     def look(
-        self,
-        position: np.ndarray,
-        reach: float,
-        targets: np.ndarray,
-        samples: np.ndarray,
-        error: tuple[np.ndarray, float],
-    ) -> tuple[dict[int, np.ndarray], list[np.ndarray]]:
-        def seen(thing: np.ndarray) -> np.ndarray:
-            noise = np.array([self.draws.normal(self.numbers["noise_m"]) for _ in range(2)])
-            if not self.numbers["own_pose_error"]:
-                return thing + noise
-            offset, turn = error
-            east, north = thing - position
-            cos, sin = math.cos(turn), math.sin(turn)
-            return position + offset + np.array([cos * east - sin * north, sin * east + cos * north]) + noise
+        self, position: Place, reach: float, targets: Sequence[Place], samples: np.ndarray, error: PoseError
+    ) -> tuple[dict[int, Place], list[Place]]:
+        x, y = position
+        east, north, turn = error if self.numbers["own_pose_error"] else (0.0, 0.0, 0.0)
+        cos, sin = math.cos(turn), math.sin(turn)
+
+        def seen(thing: Place) -> Place:
+            dx, dy = thing[0] - x, thing[1] - y
+            noise = self.numbers["noise_m"]
+            return (
+                x + east + cos * dx - sin * dy + self.draws.normal(noise),
+                y + north + sin * dx + cos * dy + self.draws.normal(noise),
+            )
 
         near = {number: seen(place) for number, place in enumerate(targets) if math.dist(place, position) <= reach}
         if not self.queue and len(samples):
@@ -139,7 +144,7 @@ class FarSense:
             order = np.argsort(distances, kind="stable")
             self.queue = [int(sample) for sample in order if distances[sample] <= reach]
         told, self.queue = self.queue[: self.PER_TICK], self.queue[self.PER_TICK :]
-        return near, [seen(samples[sample]) for sample in told]
+        return near, [seen((float(samples[one][0]), float(samples[one][1]))) for one in told]
 
 
 class Wheels:
@@ -231,7 +236,9 @@ class Radio:
         if distance <= reach and not blocked and not lost and not self.draws.happens(numbers["corruption"]):
             self.on_their_way.append((letter, sender))
 
-    def hear(self, now: float, distances: np.ndarray) -> list[tuple[grn.Message, float]]:
+    def hear(self, now: float, distances: Sequence[float]) -> list[tuple[grn.Message, float]]:
+        if not self.on_their_way:
+            return []
         arrived = [(letter, sender) for letter, sender in self.on_their_way if letter.arrives <= now + 1e-9]
         self.on_their_way = [pair for pair in self.on_their_way if pair not in arrived]
         arrived.sort(key=lambda pair: (distances[pair[1]], pair[1]))

@@ -8,7 +8,7 @@ from typing import Callable, Optional
 import grn
 import mujoco
 import numpy as np
-from conditions import Clock, Draws, FarSense, Lab, Letter, Localisation, Radio, Wheels, known
+from conditions import Clock, Draws, FarSense, Lab, Letter, Localisation, Place, Radio, Wheels, known
 from world import BODY_RADIUS, PROXIMITY_RANGE, STEPS_PER_SECOND, World, build
 
 FRAMES_PER_SECOND = 32
@@ -62,11 +62,11 @@ class Swarm:
             [wheels.axle_factor for wheels in self.wheels],
             lab["bodies"]["target_radius_m"],
         )
-        self.bearings = np.radians(lab["proximity"]["bearings_deg"])
+        self.bearings = [math.radians(bearing) for bearing in lab["proximity"]["bearings_deg"]]
         self.travel = self.scenario.longest_path / speed
 
-    def targets(self, now: float) -> np.ndarray:
-        return np.array(self.scenario.targets_at(min(1.0, max(0.0, now - SETTLE) / self.travel) if self.travel else 0.0))
+    def targets(self, now: float) -> list[Place]:
+        return self.scenario.targets_at(min(1.0, max(0.0, now - SETTLE) / self.travel) if self.travel else 0.0)
 
     def run(self, watch: Optional[Callable[[float], None]] = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions, targets and contacts of every 1/32 s until all targets have arrived."""
@@ -103,9 +103,10 @@ class Swarm:
         if not due and not measured:
             return
         mujoco.mj_kinematics(self.world.model, self.world.data)
-        positions, headings = self.world.positions(), self.world.headings()
+        positions = [(float(x), float(y)) for x, y in self.world.positions()]
+        headings = self.world.headings().tolist()
         for robot in measured:
-            self.localisation[robot].measure(now, positions[robot], float(headings[robot]))
+            self.localisation[robot].measure(now, positions[robot], headings[robot])
         targets = self.targets(now)
         said = []
         for robot in due:
@@ -116,37 +117,39 @@ class Swarm:
         for robot, message in said:
             self.broadcast(robot, message, now, positions)
 
-    def tick(self, robot: int, now: float, positions: np.ndarray, headings: np.ndarray, targets: np.ndarray) -> grn.Command:
+    def tick(
+        self, robot: int, now: float, positions: list[Place], headings: list[float], targets: list[Place]
+    ) -> grn.Command:
         here = positions[robot]
         localisation = self.localisation[robot]
         fix = localisation.newest(now)
-        seen, obstacles = {}, []
+        seen: dict[int, Place] = {}
+        obstacles: list[Place] = []
         if robot < self.mothers:
             seen, obstacles = self.far_senses[robot].look(here, self.reach, targets, self.samples, localisation.error)
-        distances = np.hypot(*(positions - here).T)
+        distances = [math.dist(here, place) for place in positions]
         return self.robots[robot].tick(
             position=None if fix is None else fix.position,
             heading=None if fix is None else fix.heading,
             pose_age=0.0 if fix is None else fix.age,
             elapsed=self.clocks[robot].tick(now),
-            proximity=self.feel(robot, positions, float(headings[robot]), distances),
+            proximity=self.feel(robot, here, headings[robot], distances),
             targets=seen,
             obstacles=obstacles,
             heard=self.radios[robot].hear(now, distances),
         )
 
-    def feel(
-        self, robot: int, positions: np.ndarray, heading: float, distances: np.ndarray
-    ) -> list[Optional[float]]:
-        """Free distances from the body's edge, as rays in the physics meet walls and robots."""
-        alone = np.sort(distances)[1:2].min(initial=math.inf) > 2 * BODY_RADIUS + PROXIMITY_RANGE
-        if alone and self.scenario.clearance(positions[robot]) > BODY_RADIUS + PROXIMITY_RANGE:
-            return [None] * len(self.bearings)
+    def feel(self, robot: int, here: Place, heading: float, distances: list[float]) -> Optional[list[Optional[float]]]:
+        """Free distances from the body's edge, as rays in the physics meet walls and robots; None if nothing is in reach."""
+        reach = 2 * BODY_RADIUS + PROXIMITY_RANGE
+        alone = sum(distance <= reach for distance in distances) == 1
+        if alone and self.scenario.clearance(here) > BODY_RADIUS + PROXIMITY_RANGE:
+            return None
         numbers, draws = self.lab["proximity"], self.proximity[robot]
         felt: list[Optional[float]] = []
         for bearing, gain in zip(self.bearings, self.gains[robot]):
-            way = np.array([math.cos(heading + bearing), math.sin(heading + bearing)])
-            free = self.world.ray(positions[robot], way, robot) - BODY_RADIUS
+            way = (math.cos(heading + bearing), math.sin(heading + bearing))
+            free = self.world.ray(here, way, robot) - BODY_RADIUS
             if free > PROXIMITY_RANGE:
                 felt.append(None)
                 continue
@@ -154,24 +157,24 @@ class Swarm:
             felt.append(max(0.0, sensed))
         return felt
 
-    def broadcast(self, sender: int, message: grn.Message, now: float, positions: np.ndarray) -> None:
+    def broadcast(self, sender: int, message: grn.Message, now: float, positions: list[Place]) -> None:
         numbers = self.lab["radio"]
-        distances = np.hypot(*(positions - positions[sender]).T)
         for robot, radio in enumerate(self.radios):
+            distance = math.dist(positions[robot], positions[sender])
             extra = (radio.fragments(message) - 1) / FRAMES_PER_SECOND
             # Nothing is heard in the tick in which it is said.
             letter = Letter(message, now, now + max(numbers["latency_s"], 1e-6) + extra)
             if robot == sender:
                 if radio.draws.happens(numbers["echo"]):
                     radio.on_their_way.append((letter, sender))
-            elif distances[robot] <= 2.0 * numbers["range_m"]:
-                blocked = self.blocked(sender, robot, positions, distances[robot])
-                radio.carry(letter, sender, float(distances[robot]), blocked)
+            elif distance <= 2.0 * numbers["range_m"]:
+                radio.carry(letter, sender, distance, self.blocked(sender, robot, positions, distance))
 
-    def blocked(self, sender: int, robot: int, positions: np.ndarray, distance: float) -> bool:
+    def blocked(self, sender: int, robot: int, positions: list[Place], distance: float) -> bool:
         numbers = self.lab["radio"]
         if not (numbers["walls_block"] or numbers["bodies_block"]) or distance == 0.0:
             return False
-        way = (positions[robot] - positions[sender]) / distance
+        (x, y), (to_x, to_y) = positions[sender], positions[robot]
         # The receiver's own body is met a radius before its centre.
-        return self.world.ray(positions[sender], way, sender) < distance - 1.01 * BODY_RADIUS
+        way = ((to_x - x) / distance, (to_y - y) / distance)
+        return self.world.ray((x, y), way, sender) < distance - 1.01 * BODY_RADIUS

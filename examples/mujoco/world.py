@@ -10,8 +10,8 @@ Choices, and why:
 - Steppers do not yield below their torque: each wheel is a velocity servo with a time constant of some milliseconds and at
   most 30 mN m. A geared motor's rotor weighs more at the wheel than the wheel itself; without it (`armature`) the servo and
   the friction of so light a wheel fight each other, and robots jerk.
-- The physics step is 1/256 s, 8 steps in a control tick of 1/32 s; with half of it the tracks of single robots agree to 0.1 mm.
-  Friction cones are elliptic and `impratio` is 10: with MuJoCo's defaults wheels creep sideways.
+- The physics step is 1/256 s, 8 steps in a control tick of 1/32 s, and the floor is stiff (`solref` of two steps). A robot that
+  weaves for ten seconds then is 0.3 mm from where its wheels should have taken it; with steps of 1/128 s it is 0.7 mm.
 - A wall is a row of boxes along the edges of its polygon, inside it.
 """
 
@@ -72,7 +72,7 @@ class World:
         if self.model.nmocap:
             self.data.mocap_pos[:, :2] = places
 
-    def ray(self, start: np.ndarray, way: np.ndarray, robot: int) -> float:
+    def ray(self, start: tuple[float, float], way: tuple[float, float], robot: int) -> float:
         """Metres from `start` along the unit vector `way` to the first wall or robot other than `robot`; infinite if none."""
         groups = np.zeros(6, np.uint8)
         groups[SOLID] = 1
@@ -86,6 +86,10 @@ class World:
     def touching(self) -> tuple[set[tuple[int, int]], set[int]]:
         """Pairs of robots, and robots at walls, that touch."""
         geoms = self.data.contact.geom
+        # The floor is the first geom, and what touches it is nothing that counts.
+        geoms = geoms[geoms.min(axis=1) > 0] if len(geoms) else geoms
+        if not len(geoms):
+            return set(), set()
         robots, walls = self.is_robot[geoms], self.is_wall[geoms]
         pairs = {(int(min(a, b)), int(max(a, b))) for a, b in robots[(robots >= 0).all(axis=1)]}
         at_walls = (robots >= 0).any(axis=1) & walls.any(axis=1)
@@ -106,9 +110,6 @@ def build(
         "option",
         timestep=repr(1 / STEPS_PER_SECOND),
         integrator="implicitfast",
-        cone="elliptic",
-        impratio="10",
-        iterations="20",
     )
     world = ElementTree.SubElement(root, "worldbody")
     east, north = scenario.region

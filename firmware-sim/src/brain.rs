@@ -1,5 +1,6 @@
 //! What drives a robot: the controller under test, seen from the simulator.
 
+use core::error::Error;
 use core::fmt;
 use grn_core::robot::{Command, Controller, Percept};
 use grn_core::scalar::Scalar;
@@ -22,25 +23,34 @@ impl<B: Brain + ?Sized> Brain for Box<B> {
 /// The robot's own controller, unchanged. A percept that it refuses ends the run: no robot can have it.
 impl<S: Scalar, const N: usize> Brain for Controller<S, N> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        Controller::tick(self, percept).map_err(|error| BrainError::new(error.to_string()))
+        Controller::tick(self, percept).map_err(BrainError::new)
     }
 }
 
 /// Why a brain gave no command.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BrainError(String);
+#[derive(Debug)]
+pub struct BrainError(Box<dyn Error + Send + Sync>);
 
 impl BrainError {
-    /// With this reason, in words for the user.
-    pub fn new(reason: impl Into<String>) -> Self {
+    /// With this reason: words for the user, or the error that kept the brain from answering.
+    pub fn new(reason: impl Into<Box<dyn Error + Send + Sync>>) -> Self {
         BrainError(reason.into())
+    }
+
+    /// The reason, of its own type.
+    pub fn reason(&self) -> &(dyn Error + Send + Sync + 'static) {
+        self.0.as_ref()
     }
 }
 
 impl fmt::Display for BrainError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        self.0.fmt(f)
     }
 }
 
-impl core::error::Error for BrainError {}
+impl Error for BrainError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.0.source()
+    }
+}

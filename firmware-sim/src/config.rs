@@ -75,7 +75,9 @@ impl SwarmConfig {
             if right { Ok(()) } else { Err(ConfigError { field, value: value.to_string(), expected }) }
         };
         let real = |field, value: f64, right, expected: &str| {
-            let fault = || ConfigError { field, value: value.to_string(), expected: expected.to_owned() };
+            // 5e-324 and 1e300 as they are, not in hundreds of zeros.
+            let shown = || format!("{value:?}").trim_end_matches(".0").to_owned();
+            let fault = || ConfigError { field, value: shown(), expected: expected.to_owned() };
             if value.is_finite() && right { Ok(()) } else { Err(fault()) }
         };
         let &SwarmConfig {
@@ -165,6 +167,8 @@ mod tests {
             (SwarmConfig { mothers: 21, ..good.clone() }, "mothers", "21"),
             (SwarmConfig { scale: f64::NAN, ..good.clone() }, "scale", "NaN"),
             (SwarmConfig { target_speed_m_per_s: 0.2, ..good.clone() }, "target_speed_m_per_s", "0.2"),
+            (SwarmConfig { target_speed_m_per_s: 1e300, ..good.clone() }, "target_speed_m_per_s", "1e300"),
+            (SwarmConfig { target_speed_m_per_s: -5e-324, ..good.clone() }, "target_speed_m_per_s", "-5e-324"),
             (SwarmConfig { settle_s: -1.0, ..good.clone() }, "settle_s", "-1"),
             (SwarmConfig { variation: 0.3, ..good.clone() }, "variation", "0.3"),
             (SwarmConfig { stops: vec![Stop { robot: 20, tick: 0 }], ..good.clone() }, "stops.robot", "20"),

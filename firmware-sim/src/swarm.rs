@@ -48,7 +48,7 @@ pub enum Outcome {
 }
 
 /// A brain failed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct StepError {
     /// Whose brain.
     pub robot: usize,

@@ -145,14 +145,6 @@ pub fn read_blob(path: &Path) -> Result<Blob, InputError> {
     })
 }
 
-/// Writes a blob, whole or not at all.
-///
-/// # Errors
-/// A parameter out of range, or what the operating system says.
-pub fn write_blob(path: &Path, blob: &Blob) -> Result<(), FileError> {
-    write(path, blob_bytes(blob).map_err(|error| FileError::new(path, error))?)
-}
-
 /// The bytes of a blob.
 ///
 /// # Errors

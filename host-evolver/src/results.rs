@@ -33,7 +33,7 @@ pub fn contents(
     for (place, member) in front.iter().enumerate() {
         let name = format!("{blobs_in}{place:02}-{}-nodes.grn", member.nodes);
         let blob = blob_of(member);
-        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(&name, error))?;
+        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::internal(&name, error))?;
         if place == deployed(front) {
             contents.insert(KNEE.into(), bytes.clone());
             knee = Some(blob);
@@ -43,7 +43,7 @@ pub fn contents(
     }
     contents.insert(FRONT.into(), front_csv(objectives, front, &names));
     contents.insert(HISTORY.into(), history_csv(history));
-    let knee = knee.ok_or_else(|| FileError::new(FRONT, "the front is empty"))?;
+    let knee = knee.ok_or_else(|| FileError::internal(FRONT, "the front is empty"))?;
     Ok((contents, knee))
 }
 

@@ -6,7 +6,7 @@ use firmware_sim::config::{ConfigError, SwarmConfig};
 use firmware_sim::geometry::Walls;
 use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
-use firmware_sim::swarm::{Outcome, Progress, Swarm};
+use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
 use firmware_sim::trace::Observer;
 use grn_core::blob::{Blob, Identity};
 use grn_core::field::Kernel;
@@ -16,6 +16,7 @@ use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
 use serde::Serialize;
+use std::error::Error;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -55,9 +56,7 @@ pub enum SimulationError {
     /// The swarm cannot be set up.
     Config(ConfigError),
     /// A robot's brain failed.
-    Brain(String),
-    /// An emulated robot could not be started.
-    Emulator(String),
+    Brain(StepError),
 }
 
 impl fmt::Display for SimulationError {
@@ -66,12 +65,22 @@ impl fmt::Display for SimulationError {
             SimulationError::Load(error) => error.fmt(f),
             SimulationError::NoPattern(error) => error.fmt(f),
             SimulationError::Config(error) => error.fmt(f),
-            SimulationError::Brain(error) | SimulationError::Emulator(error) => f.write_str(error),
+            SimulationError::Brain(error) => error.fmt(f),
         }
     }
 }
 
-impl std::error::Error for SimulationError {}
+impl Error for SimulationError {
+    /// It shows the words of the error in it, so the next in the chain is what that one comes from.
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            SimulationError::Load(error) => error.source(),
+            SimulationError::NoPattern(error) => error.source(),
+            SimulationError::Config(error) => error.source(),
+            SimulationError::Brain(error) => error.source(),
+        }
+    }
+}
 
 /// A finished run.
 pub struct Simulation {
@@ -184,7 +193,7 @@ pub(crate) fn run<B: Brain>(
     let mut meter = meter(&ruler, &marks, TICKS_PER_SECOND);
     let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
     let outcome = swarm.run(end, &mut (&mut meter, observer), |progress| watch(share(progress)));
-    match outcome.map_err(|error| SimulationError::Brain(error.to_string()))? {
+    match outcome.map_err(SimulationError::Brain)? {
         Outcome::Interrupted => return Ok(None),
         Outcome::Finished => {}
     }

@@ -5,47 +5,20 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use support::{Outcome, content, text};
+use support::desk::{CAMPAIGN, Desk, edited};
+use support::{Outcome, content, repository, text};
 
-const SMALL: &str = r#"
-name = "small"
-seeds = 3
-
-[[scenario]]
-file = "REPOSITORY/scenarios/channel.toml"
-evaluations = 900
-
-[[method]]
-name = "MOGP"
-algorithm = "mogp"
-motifs = "all"
-
-[[method]]
-name = "EH-GRN 2"
-algorithm = "eh-grn"
-structure = 2
-baseline = true
-
-[[model]]
-name = "printed"
-file = "REPOSITORY/models/nand-xnor.grn"
-
-[[transfer]]
-name = "random obstacles"
-from = ["channel"]
-file = "REPOSITORY/scenarios/open.toml"
-random = { worlds = 3, seed = 1, density = 0.03, radius = [0.3, 0.6], clearance = 1.5 }
-"#;
-
+/// The campaign of the desk with three seeds, a method that the other is compared with, and no variations.
 fn small() -> String {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    SMALL.replace("REPOSITORY", &repository.display().to_string().replace('\\', "/"))
+    let text = edited(CAMPAIGN, "seeds = 1", "seeds = 3");
+    let text = edited(&text, "evaluations = 800", "evaluations = 900");
+    let text = edited(&text, "structure = 2", "structure = 2\nbaseline = true");
+    edited(&text, "[vary]\nlevel = [0.9, 1.1]\n", "")
 }
 
-fn file(folder: &Path, text: &str) -> std::io::Result<PathBuf> {
-    let path = folder.join("campaign.toml");
-    std::fs::write(&path, text)?;
-    Ok(path)
+fn written(desk: &Desk, text: &str) -> std::io::Result<PathBuf> {
+    std::fs::write(desk.path("campaign.toml"), text)?;
+    Ok(desk.path("campaign.toml"))
 }
 
 fn campaign(file: &Path, out: &Path, more: &[&str]) -> Command {
@@ -61,9 +34,9 @@ fn assert_done(output: &Output) {
 
 #[test]
 fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome {
-    let scratch = tempfile::tempdir()?;
-    let plan = file(scratch.path(), &small())?;
-    let alone = scratch.path().join("alone");
+    let desk = Desk::new()?;
+    let plan = written(&desk, &small())?;
+    let alone = desk.path("alone");
     let output = campaign(&plan, &alone, &["--threads", "1"]).output()?;
     assert_done(&output);
     assert!(text(&output.stdout).contains("A12"));
@@ -75,7 +48,7 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
     let results = text(&std::fs::read(alone.join("results.csv"))?);
     assert_eq!(results.lines().count(), 1 + 6);
 
-    let killed = scratch.path().join("killed");
+    let killed = desk.path("killed");
     let mut whole_runs = Vec::new();
     for kill in 0..20 {
         let mut child = campaign(&plan, &killed, &[]).spawn()?;
@@ -88,7 +61,7 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
     assert_done(&campaign(&plan, &killed, &[]).output()?);
     assert!(content(&killed)? == expected, "killed and resumed, the result is another");
 
-    let (first, second) = (scratch.path().join("first"), scratch.path().join("second"));
+    let (first, second) = (desk.path("first"), desk.path("second"));
     let part = campaign(&plan, &first, &["--shard", "1/2"]).output()?;
     assert_done(&part);
     assert!(text(&part.stdout).contains("3 of 6 runs are there"), "{}", text(&part.stdout));
@@ -101,20 +74,13 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
 
 #[test]
 fn variations_are_in_the_tables_and_not_in_the_figures() -> Outcome {
-    let scratch = tempfile::tempdir()?;
-    let two_targets = r#"
-[[transfer]]
-name = "two targets"
-from = ["channel"]
-file = "REPOSITORY/scenarios/channel-two-targets.toml"
-
-[vary]
-level = [0.75, 1.25]
-"#;
-    let more = small().replace("seeds = 3", "seeds = 2") + two_targets;
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").display().to_string().replace('\\', "/");
-    let plan = file(scratch.path(), &more.replace("REPOSITORY", &repository))?;
-    let out = scratch.path().join("out");
+    let desk = Desk::new()?;
+    let two_targets = format!(
+        "[[transfer]]\nname = \"two targets\"\nfrom = [\"world\"]\nfile = {:?}\n[vary]\nlevel = [0.75, 1.25]\n",
+        repository("scenarios/channel-two-targets.toml").display().to_string()
+    );
+    let plan = written(&desk, &(edited(&small(), "seeds = 3", "seeds = 2") + &two_targets))?;
+    let out = desk.path("out");
     assert_done(&campaign(&plan, &out, &[]).output()?);
     let transfers = text(&std::fs::read(out.join("transfers.csv"))?);
     assert!(transfers.contains("\"two targets, level x 0.75\"") && !out.join("transfers-2.svg").exists());
@@ -125,10 +91,10 @@ level = [0.75, 1.25]
 
 #[test]
 fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
-    let scratch = tempfile::tempdir()?;
+    let desk = Desk::new()?;
     let refused = |text_of_file: &str, more: &[&str], words: &[&str]| -> Outcome {
-        let plan = file(scratch.path(), text_of_file)?;
-        let output = campaign(&plan, &scratch.path().join("out"), more).output()?;
+        let plan = written(&desk, text_of_file)?;
+        let output = campaign(&plan, &desk.path("out"), more).output()?;
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{message}");
         for word in words {
@@ -141,19 +107,19 @@ fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     refused(&small().replace("structure = 2", "structure = 3"), &[], &["campaign.toml", "structure 3"])?;
     refused(&small().replace("motifs = \"all\"", "motif = \"all\""), &[], &["campaign.toml", "motif"])?;
     refused(&small().replace("evaluations = 900", "evaluations = 9"), &[], &["evaluations = 9", "800"])?;
-    refused(&small().replace("[\"channel\"]", "[\"canal\"]"), &[], &["canal", "channel"])?;
-    refused(&small().replace("nand-xnor.grn", "nothing.grn"), &[], &["nothing.grn", "cannot be read"])?;
-    refused(&small().replace("\"EH-GRN 2\"", "\"mogp\""), &[], &["mogp", "another"])?;
+    refused(&small().replace("[\"world\"]", "[\"wrold\"]"), &[], &["wrold", "world"])?;
+    refused(&small().replace("blob.grn", "nothing.grn"), &[], &["nothing.grn", "cannot be read"])?;
+    refused(&small().replace("name = \"e\"", "name = \"M\""), &[], &["M", "another"])?;
     refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["transfer[0].random.density", "no room"])?;
     refused(&small().replace("worlds = 3", "worlds = 3, depth = 1"), &[], &["campaign.toml", "depth"])?;
     refused(&small().replace("structure = 2", "structure = 2\ncolour = 1"), &[], &["campaign.toml", "colour"])?;
     refused(&small(), &["--shard", "3/2"], &["3/2", "2/3"])?;
     refused(&small(), &["--merge", "nowhere"], &["nowhere", "no such folder"])?;
 
-    let plan = file(scratch.path(), &small().replace("seeds = 3", "seeds = 1"))?;
-    let out = scratch.path().join("mine");
+    let plan = written(&desk, &small().replace("seeds = 3", "seeds = 1"))?;
+    let out = desk.path("mine");
     assert_done(&campaign(&plan, &out, &[]).output()?);
-    let plan = file(scratch.path(), &small().replace("evaluations = 900", "evaluations = 1000"))?;
+    let plan = written(&desk, &small().replace("evaluations = 900", "evaluations = 1000"))?;
     let output = campaign(&plan, &out, &[]).output()?;
     assert_eq!(output.status.code(), Some(2));
     let message = text(&output.stderr);

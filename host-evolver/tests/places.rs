@@ -26,6 +26,12 @@ fn campaign(folder: &Path, out: &Path, motifs: &str) -> std::io::Result<Command>
     Ok(command)
 }
 
+fn flash(out: &Path) -> Command {
+    let mut command = grn();
+    command.arg("flash").arg(model()).arg("--out").arg(out);
+    command
+}
+
 fn names(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(content(folder)?.into_iter().map(|(path, _)| path).collect())
 }
@@ -62,6 +68,10 @@ fn nothing_is_written_among_the_files_of_a_run_or_campaign() -> Outcome {
         let place = scratch.path().join(place);
         assert_refused(&simulate(&place, &[]).output()?, &["is filled by", "--out"]);
         assert_refused(&evolve(&place, 1, &[]).output()?, &["is filled by", "--out"]);
+        assert_refused(&flash(&place).output()?, &["is filled by", "--out"]);
+    }
+    for place in [&run, &other] {
+        assert_refused(&flash(place).output()?, &["folder of a run or campaign", "--out"]);
     }
     assert_eq!((content(&run)?, content(&other)?), before);
     assert_answered(&simulate(&run.join("another"), &[]).output()?);
@@ -131,8 +141,7 @@ fn files_that_belong_together_are_replaced_together_or_not_at_all() -> Outcome {
     let slow = ["--robots", "100", "--speed", "0.001"];
     assert_refused(&simulate(&simulated, &slow).output()?, &["trace.csv", "it is a folder"]);
     assert!(begin.elapsed() < std::time::Duration::from_secs(5), "refused after the simulation");
-    let flash = grn().arg("flash").arg(model()).arg("--out").arg(&flashed).output()?;
-    assert_refused(&flash, &["flash.gdb", "it is a folder"]);
+    assert_refused(&flash(&flashed).output()?, &["flash.gdb", "it is a folder"]);
     assert_eq!(names(&simulated)?, [PathBuf::from("metrics.json")]);
     assert_eq!(content(&flashed)?, [(PathBuf::from("slot.hex"), b"old".to_vec())]);
     Ok(())

@@ -25,13 +25,18 @@ fn wrong_worlds() -> Outcome {
         ("20.0, 20.0]", "5e-324, 20.0]", "2:11: region[0] = 5e-324: ", &["0.5"]),
         ("20.0, 20.0]", "nan, 20.0]", "2:11: region[0] = nan: ", &["0.5"]),
         ("20.0, 20.0]", "20.0, 20.0, 20.0]", "2:10: region = [20.0, 20.0, 20.0]: ", &["length 3", "two numbers"]),
-        ("20.0, 20.0]", "\"wide\", 20.0]", "2:11: region[0] = \"wide\": ", &["string"]),
+        ("20.0, 20.0]", "\"wide\", 20.0]", "2:11: region[0] = \"wide\": ", &["must be a number, and is a text"]),
         ("snapshots = 15", "snapshots = 10000", "3:13: snapshots = 10000: ", &["at most 791", "smaller region"]),
         ("snapshots = 15", "snapshots = 0", "3:13: snapshots = 0: ", &["1 to 10000"]),
         ("snapshots = 15", "snapshots = -3", "3:13: snapshots = -3: ", &["1 to 10000"]),
         ("snapshots = 15", "snapshots = 1e3", "3:13: snapshots = 1e3: ", &["whole number"]),
         ("snapshots = 15", "snapshots = 9223372036854775808", "3:13: snapshots = 9223372036854775808: ", &["whole"]),
-        ("snapshots = 15", "snapshots = true", "3:13: snapshots = true: ", &["boolean"]),
+        (
+            "snapshots = 15",
+            "snapshots = true",
+            "3:13: snapshots = true: ",
+            &["must be a whole number, and is true or false"],
+        ),
         (
             "target_width = 1.5",
             "target_width = 150.0",
@@ -235,6 +240,7 @@ fn wrong_files() -> Outcome {
     assert_all(cases.iter().map(|(arguments, words)| desk.refuses(arguments, words, arguments[1])));
     if cfg!(unix) {
         desk.refuses(&["evolve", "/dev/zero"], &["/dev/zero: longer than 4 MiB"], "a device without end")?;
+        desk.refuses(&["flash", "/dev/zero", "--out", "x"], &["/dev/zero: longer than 4 MiB"], "a device without end")?;
         desk.refuses(&["show", "/dev/null"], &["/dev/null: this is an empty file"], "a device with nothing")?;
     }
     Ok(())
@@ -265,5 +271,82 @@ fn wrong_options() -> Outcome {
         (&["scatter", "world.toml", "--clearance", "inf"], &["--clearance", "inf"]),
     ];
     assert_all(cases.iter().map(|(arguments, words)| desk.refuses(arguments, words, &arguments.join(" "))));
+    Ok(())
+}
+
+/// A minus sign is the beginning of a number here, not of an option.
+#[test]
+fn negative_numbers() -> Outcome {
+    let desk = Desk::new()?;
+    let evolve: &[&str] = &["evolve", "world.toml"];
+    let campaign: &[&str] = &["campaign", "campaign.toml"];
+    let simulate: &[&str] = &["simulate", "blob.grn", "world.toml"];
+    let scatter: &[&str] = &["scatter", "world.toml"];
+    let (upload, slot): (&[&str], &[&str]) =
+        (&["flash", "blob.grn", "--to", "tcp:x:1"], &["flash", "blob.grn", "--out", "x"]);
+    let cases: [(&[&str], &str, &str); 20] = [
+        (evolve, "--seed", "from 0 to 18446744073709551615"),
+        (evolve, "--threads", "from 1 to"),
+        (evolve, "--evaluations", "from 1 to 10000000"),
+        (evolve, "--scale", "from 0.01 to 10"),
+        (campaign, "--threads", "from 1 to"),
+        (campaign, "--shard", "2/3"),
+        (simulate, "--seed", "from 0 to"),
+        (simulate, "--robots", "from 1 to 250"),
+        (simulate, "--scale", "from 0.01 to 10"),
+        (simulate, "--speed", "above 0 and at most 0.127"),
+        (simulate, "--emulated", "from 1 to 250"),
+        (scatter, "--seed", "from 0 to"),
+        (scatter, "--density", "from 0.001 to 0.5"),
+        (scatter, "--clearance", "from 0"),
+        (upload, "--baud", "from 1 to"),
+        (slot, "--address", "0x"),
+        (slot, "--sequence", "0 to 4000000000"),
+        (&["robots", "tcp:x:1"], "--baud", "from 1 to"),
+        (&["confirm", "tcp:x:1"], "--baud", "from 1 to"),
+        (&["rollback", "tcp:x:1"], "--baud", "from 1 to"),
+    ];
+    assert_all(cases.iter().flat_map(|&(command, option, words)| {
+        let desk = &desk;
+        ["-1", "-1e-6", "-inf"].map(|number| {
+            let option_and_number = [option, number];
+            desk.refuses(&[command, &option_and_number].concat(), &[option, number, words], option)
+        })
+    }));
+    desk.refuses(
+        &["scatter", "world.toml", "--radius", "-1", "-2"],
+        &["--radius", "-1", "from 0.01 to 100"],
+        "--radius",
+    )
+}
+
+/// Each was taken and did nothing, or something else than it says.
+#[test]
+fn options_of_emulators_without_emulators() -> Outcome {
+    let desk = Desk::new()?;
+    let simulate = ["simulate", "blob.grn", "world.toml", "--robots", "3"];
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["--image", "blob.grn"], &["--image blob.grn", "add --target qemu, or leave it out"]),
+        (&["--emulated", "2"], &["--emulated 2", "add --target qemu, or leave it out"]),
+        (&["--target", "native", "--emulated", "2"], &["--emulated 2", "add --target qemu, or leave it out"]),
+        (&["--target", "qemu", "--emulated", "4"], &["--emulated 4", "the number of robots, 3"]),
+        (&["--target", "qemu", "--image", "blob.grn"], &["blob.grn is no image", "cargo xtask target"]),
+    ];
+    let cases = if cfg!(unix) { &cases[..] } else { &cases[..3] };
+    assert_all(cases.iter().map(|(more, words)| desk.refuses(&[&simulate, *more].concat(), words, &more.join(" "))));
+    Ok(())
+}
+
+#[test]
+fn tiny_and_huge_numbers_are_told_in_short() -> Outcome {
+    let desk = Desk::new()?;
+    for number in ["5e-324", "1e300", "-1e300"] {
+        let told = format!("--speed {number}: ");
+        desk.refuses(&["simulate", "blob.grn", "world.toml", "--speed", number], &[&told], number)?;
+        std::fs::write(desk.path("world.toml"), edited(WORLD, "snapshots = 15", &format!("snapshots = {number}")))?;
+        let told = format!("world.toml:3:13: snapshots = {number}: must be a whole number, without point and exponent");
+        desk.refuses(&["evolve", "world.toml"], &[&told], number)?;
+        std::fs::write(desk.path("world.toml"), WORLD)?;
+    }
     Ok(())
 }

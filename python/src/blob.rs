@@ -86,7 +86,8 @@ impl Blob {
 
     /// Writes it to a file, whole or not at all.
     fn save(&self, path: PathBuf) -> PyResult<()> {
-        files::write_blob(&path, &self.inner).map_err(|error| failed(&error))
+        let bytes = files::blob_bytes(&self.inner).map_err(|error| failed(&error))?;
+        files::write(&path, bytes).map_err(|error| failed(&error))
     }
 
     /// The same controller for a world of another scale.

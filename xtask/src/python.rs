@@ -60,7 +60,9 @@ impl Environment {
             return Ok(());
         }
         let installed = told(self.pip().args(["--requirement", NEEDED]));
-        installed.map_err(|error| format!("{error}: what {NEEDED} names has to be installed for the Python package's tests"))?;
+        installed.map_err(|error| {
+            format!("{error}: what {NEEDED} names has to be installed for the Python package's tests")
+        })?;
         fs::write(&provided, needed).map_err(|error| format!("{}: {error}", provided.display()))
     }
 
@@ -75,7 +77,9 @@ impl Environment {
         // Of an older build.
         let _ = fs::remove_dir_all(&wheels);
         let mut maturin = self.python();
-        maturin.args(["-m", "maturin", "build", "--quiet", "--manifest-path", "python/Cargo.toml", "--out"]).arg(&wheels);
+        maturin
+            .args(["-m", "maturin", "build", "--quiet", "--manifest-path", "python/Cargo.toml", "--out"])
+            .arg(&wheels);
         if build == Build::Release {
             maturin.arg("--release");
         }

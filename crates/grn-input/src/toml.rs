@@ -145,8 +145,37 @@ fn shape_error(text: &str, root: &Spanned<DeTable<'_>>, error: &toml::de::Error)
         return InputError::new(joined(&within, missing), "", "is missing; add it").at(place);
     }
     let written = text.get(span).unwrap_or_default();
-    let message = message.replace("as i128, ", "").replace("i64", "a whole number").replace("u64", "a whole number");
-    InputError::new(within, shown(written.lines().next().unwrap_or_default()), message).at(place)
+    let expected = wrong_type(&message).unwrap_or(message);
+    InputError::new(within, shown(written.lines().next().unwrap_or_default()), expected).at(place)
+}
+
+/// From `invalid type: WHAT IS THERE, expected WHAT IS NEEDED`, with Rust's names of types, to words of TOML.
+fn wrong_type(message: &str) -> Option<String> {
+    // An integer that is no i64 is of the right type for serde.
+    let too_large = || message.strip_prefix("invalid value: ").filter(|rest| rest.ends_with("expected i64"));
+    let (found, needed) = message.strip_prefix("invalid type: ").or_else(too_large)?.rsplit_once(", expected ")?;
+    let needed = match needed {
+        "f64" => "a number",
+        "i64" if found.starts_with("floating point") => "a whole number, without point and exponent",
+        "i64" if found.starts_with("integer") => return Some("must be a smaller whole number".into()),
+        "i64" => "a whole number",
+        "a sequence" => "a list",
+        "a map" => "a table",
+        "a boolean" => "true or false",
+        "a string" => "a text in quotes",
+        _ if needed.starts_with("struct ") => "a table",
+        other => other,
+    };
+    let kinds = [
+        ("floating point", "a number"),
+        ("integer", "a whole number"),
+        ("string", "a text"),
+        ("boolean", "true or false"),
+        ("sequence", "a list"),
+        ("map", "a table"),
+    ];
+    let found = kinds.iter().find(|(kind, _)| found.starts_with(kind)).map_or(found, |(_, words)| words);
+    Some(format!("must be {needed}, and is {found}"))
 }
 
 fn likeness(a: &str, b: &str) -> f64 {
@@ -242,9 +271,25 @@ mod tests {
             (
                 "count = 3",
                 "count = 3.5",
-                "line 4:9: ring.count = 3.5: invalid type: floating point `3.5`, expected a whole",
+                "line 4:9: ring.count = 3.5: must be a whole number, without point and exponent, and is a number",
             ),
-            ("count = 3", "count = 99999999999999999999", "line 4:9: ring.count = 99999999999999999999: invalid type"),
+            ("count = 3", "count = 5e-324", "line 4:9: ring.count = 5e-324: must be a whole number"),
+            (
+                "count = 3",
+                "count = 99999999999999999999",
+                "line 4:9: ring.count = 99999999999999999999: must be a smaller whole number",
+            ),
+            (
+                "count = 3",
+                "count = 9223372036854775808",
+                "line 4:9: ring.count = 9223372036854775808: must be a smaller whole number",
+            ),
+            ("d_min = 1.0", "d_min = \"1\"", "line 3:9: ring.d_min = \"1\": must be a number, and is a text"),
+            ("d_min = 1.0", "d_min = [1]", "line 3:9: ring.d_min = [1]: must be a number, and is a list"),
+            ("d_min = 1.0", "d_min = { m = 1 }", "line 3:9: ring.d_min = { m = 1 }: must be a number, and is a table"),
+            ("d_min = 1.0", "d_min = 2026-01-01", "line 3:9: ring.d_min = 2026-01-01: must be a number, and is "),
+            ("[20.0, 1e1]", "20.0", "line 1:10: region = 20.0: must be two numbers, [x, y], and is a number"),
+            ("[[target]]", "[target]", "line 5:1: target = [target]: must be a list, and is a table"),
             ("[20.0, 1e1]", "[20.0, 1e1", "line 1:10: the list that begins here is not closed; add ]"),
             ("[[1, 2], [3, 4]]", "[[1, 2], [3, 4]", "line 6:23: path = [[1, 2], [3, 4]: unclosed array"),
             ("[ring]", "[ring", "line 2:6: [ring: unclosed table"),

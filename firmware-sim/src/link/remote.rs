@@ -1,7 +1,6 @@
 //! Processor in the loop: a robot's controller on another machine, asked through the link.
 
 use crate::brain::{Brain, BrainError};
-use core::error::Error;
 use grn_core::blob::Identity;
 use grn_core::robot::link::message::Reset;
 use grn_core::robot::{Command, Percept};
@@ -26,9 +25,6 @@ impl<W: Wire> RemoteBrain<W> {
 
 impl<W: Wire> Brain for RemoteBrain<W> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
-        self.client.ask(percept).map_err(|error| {
-            let cause = error.source().map_or_else(String::new, |source| format!(": {source}"));
-            BrainError::new(format!("{error}{cause}"))
-        })
+        self.client.ask(percept).map_err(BrainError::new)
     }
 }

@@ -42,8 +42,12 @@ fn every_error_names_place_value_and_remedy() {
         ("snapshots = 15", "snapshots = 0", "4:13: snapshots = 0: must be a number from 1 to 10000"),
         ("snapshots = 15", "snapshots = 10001", "4:13: snapshots = 10001: must be"),
         ("snapshots = 15", "snapshots = 5000", "4:13: snapshots = 5000: too many for a region of [20.0, 20.0] metres"),
-        ("snapshots = 15", "snapshots = 99999999999999999999", "4:13: snapshots = 99999999999999999999: invalid type"),
-        ("snapshots = 15", "snapshots = 1.5", "4:13: snapshots = 1.5: invalid type"),
+        (
+            "snapshots = 15",
+            "snapshots = 99999999999999999999",
+            "4:13: snapshots = 99999999999999999999: must be a smaller whole number",
+        ),
+        ("snapshots = 15", "snapshots = 1.5", "4:13: snapshots = 1.5: must be a whole number, without point"),
         (
             "target_width = 1.5",
             "target_width = 0",
@@ -89,7 +93,7 @@ fn every_error_names_place_value_and_remedy() {
         ("[14.0000, 20.0000]", "[14.0, 14.0]", "wall[0].polygon[1] = [14.0000, 14.0000]: must differ"),
         ("name = \"channel\"", "name = \"..\"", "2:8: name = \"..\": a name with letters or digits"),
         ("name = \"channel\"", "name = \"a\\u0000\"", "2:8: name = \"a\\u0000\": a name is one line"),
-        ("name = \"channel\"", "name = 3", "2:8: name = 3: invalid type"),
+        ("name = \"channel\"", "name = 3", "2:8: name = 3: must be a text in quotes"),
         ("snapshots = 15", "snapshot = 15", "4:1: snapshot: unknown key; did you mean snapshots?"),
         ("level = 0.5", "level = 0.5\nnoise = 2", "11:1: morphogen.noise: unknown key (known here: kernel"),
         ("kernel = \"gaussian\"", "kernel = \"box\"", "7:10: morphogen.kernel = \"box\": unknown variant"),

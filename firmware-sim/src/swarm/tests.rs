@@ -57,7 +57,7 @@ fn recorder<B: Brain>(swarm: &Swarm<B>) -> Recorder {
 /// Every tick up to this one.
 fn recorded<B: Brain>(swarm: &mut Swarm<B>, end: u64) -> Trace {
     let mut recorder = recorder(swarm);
-    assert_eq!(swarm.run(end, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(swarm.run(end, &mut recorder, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
     recorder.into_trace()
 }
 
@@ -116,8 +116,8 @@ fn equal_seeds_give_equal_bytes() {
     let mut boxed: Swarm<Box<dyn Brain>> =
         Swarm::new(&channel(), config.clone(), |robot| Box::new(wanderer(robot)) as _).unwrap();
     let mut recorder = recorder(&boxed);
-    assert_eq!(boxed.run(150, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
-    assert_eq!(boxed.run(400, &mut recorder, |_| ControlFlow::Continue(())), Ok(Outcome::Finished));
+    assert_eq!(boxed.run(150, &mut recorder, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
+    assert_eq!(boxed.run(400, &mut recorder, |_| ControlFlow::Continue(())).unwrap(), Outcome::Finished);
     assert_eq!(recorder.into_trace().encode(), bytes(1));
 }
 
@@ -249,7 +249,7 @@ fn a_failing_brain_is_named_and_a_callback_may_stop() {
         calls.push(progress.tick);
         if progress.tick == 32 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
-    assert_eq!((stopped, calls), (Ok(Outcome::Interrupted), vec![0, 32]));
+    assert_eq!((stopped.unwrap(), calls), (Outcome::Interrupted, vec![0, 32]));
     let error = swarm.run(100, &mut recorder, |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(error.to_string(), "robot 3 gave no command in tick 49: link closed");
     assert_eq!((recorder.trace().len(), swarm.frame().tick), (50, 49));

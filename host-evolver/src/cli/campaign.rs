@@ -20,10 +20,10 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
-    #[arg(long, value_parser = options::threads)]
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
-    #[arg(long, value_name = "I/N")]
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<Shard>,
     /// Take over the runs of this folder first; may be given several times.
     #[arg(long, value_name = "DIR")]

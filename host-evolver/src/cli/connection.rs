@@ -1,6 +1,7 @@
 //! Conversations with robots: how they begin, what is told of a robot, and what to do when one fails.
 
 use super::Failure;
+use super::failure::{Blame, Fault};
 use grn_core::robot::link::Refusal;
 use grn_core::robot::link::message::{About, RobotStatus};
 use grn_core::robot::slots::{SlotStatus, Stage};
@@ -53,6 +54,28 @@ impl Error for ConnectionError {
     }
 }
 
+impl Blame for ConnectionError {
+    fn fault(&self) -> Fault {
+        match self {
+            ConnectionError::Open(error) => match error {
+                OpenError::Refused(error) => error.fault(),
+                // Another port, name or baud rate is needed, or the robot switched on.
+                OpenError::Resolve(_)
+                | OpenError::OtherKind(_)
+                | OpenError::Busy
+                | OpenError::BaudRate(_)
+                | OpenError::TimedOut { .. } => Fault::Input,
+            },
+            ConnectionError::Link(error) => match error {
+                LinkError::Wire(_) | LinkError::Refused(Refusal::Flash) => Fault::System,
+                LinkError::TooLong => Fault::Program,
+                // Nobody answers at this port as a robot of ours does, or the robot cannot do what it is asked for.
+                LinkError::Silent { .. } | LinkError::Refused(_) | LinkError::Unreadable => Fault::Input,
+            },
+        }
+    }
+}
+
 /// Opens a port and asks who is there.
 pub fn connect(
     port: &Port,
@@ -64,13 +87,12 @@ pub fn connect(
 }
 
 /// The failure of a command that needed this robot, with what to do about it.
-pub fn failed(port: &Port, error: &ConnectionError) -> Failure {
-    let failure = Failure::new(error).about(port);
-    let Some(way_out) = way_out(port, error) else { return failure };
-    match failure {
-        Failure::Input(message) => Failure::Input(format!("{message}; {way_out}")),
-        Failure::System(message) => Failure::System(format!("{message}; {way_out}")),
-        other => other,
+pub fn failed(port: &Port, error: ConnectionError) -> Failure {
+    let way_out = way_out(port, &error);
+    let failure = Failure::from(error).about(port);
+    match way_out {
+        Some(way_out) => failure.with_way_out(&way_out),
+        None => failure,
     }
 }
 

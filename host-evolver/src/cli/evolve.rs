@@ -27,13 +27,13 @@ pub struct Arguments {
     /// The world to evolve for.
     scenario: PathBuf,
     /// Seed of everything random; equal seeds give equal fronts.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Threads to work with, up to 8 a core; the result does not depend on it [default: all cores].
-    #[arg(long, value_parser = options::threads)]
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Budget: evaluations of f2; with --resume it may be larger than before.
-    #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations)]
+    #[arg(long, default_value_t = Settings::default().evaluations, value_parser = evaluations, allow_hyphen_values = true)]
     evaluations: usize,
     /// Motifs to build with: all ten, or the eight with two inputs.
     #[arg(long, default_value = "all")]
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = Objectives::paper(), value_name = "NAMES")]
     objectives: Objectives,
     /// World metres per scenario metre of the blobs.
-    #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale)]
+    #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale, allow_hyphen_values = true)]
     scale: f32,
     /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         (RunFolder::create(&folder, &this_command(), manifest, &scenario)?, None)
     };
     run.notices().iter().for_each(output::notice);
-    let mut search = Search::new(&world, settings.clone(), state)?;
+    let mut search = Search::new(&world, settings.clone(), state).map_err(|error| Failure::from(error).of_program())?;
     search_on(&mut search, &run, arguments.threads, &stop, &folder)?;
     let front = search.front();
     let is_feasible = front.iter().all(|member| member.is_feasible());
@@ -101,7 +101,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let robots = config.robots;
     let mut recorder = record::recorder(&scenario, &config);
     let knee_path = run.path("knee.grn");
-    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop)?;
+    let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop);
+    // World, swarm and models were checked before the search.
+    let simulation = simulation.map_err(Failure::of_program)?;
     let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &knee);
     not_drawn.iter().for_each(output::notice);
     contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));

@@ -1,7 +1,8 @@
 //! `grn flash`.
 
 use super::connection::{self, CONNECT_LIMIT, ConnectionError, DEFAULT_BAUD, hexadecimal};
-use super::{Answer, Failure, about, interrupt, output};
+use super::{Answer, Failure, about, interrupt, options, output, take_folder};
+use crate::files::{blob_bytes, read_blob};
 use crate::sectors::Sector;
 use crate::slot_file::{Programmer, SlotFile, SlotPaths, UploadNumber};
 use grn_core::blob::{Blob, FORMAT_VERSION};
@@ -15,6 +16,7 @@ use grn_link::flashing::{self, Flashed, Progress};
 use grn_link::{Client, LinkError, Patience, Port, Wire};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::cell::Cell;
+use std::fmt;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,7 +32,7 @@ pub struct Arguments {
     #[arg(long, value_name = "PORT")]
     to: Option<Port>,
     /// Baud rate of a serial port.
-    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = options::baud, allow_hyphen_values = true)]
     baud: u32,
     /// Leave the blob on trial: the robot keeps it after 64 ticks, and goes back to the old one if it is reset before.
     #[arg(long, conflicts_with = "out")]
@@ -40,13 +42,13 @@ pub struct Arguments {
     out: Option<PathBuf>,
     /// Where the slot begins in the robot's flash, for --out: 0x08080000 or 0x080A0000 for the e-puck2's C firmware,
     /// 0x08008000 or 0x0800C000 for grn's own image.
-    #[arg(long, default_value_t = Sector::DEFAULT, conflicts_with = "to")]
+    #[arg(long, default_value_t = Sector::DEFAULT, conflicts_with = "to", allow_hyphen_values = true)]
     address: Sector,
     /// Write the slot even where the robot's firmware keeps something else.
     #[arg(long, conflicts_with = "to")]
     force: bool,
     /// Number of this upload, for --out: the robot takes the slot with the higher one [default: seconds since 1970].
-    #[arg(long, conflicts_with = "to", allow_negative_numbers = true)]
+    #[arg(long, conflicts_with = "to", allow_hyphen_values = true)]
     sequence: Option<UploadNumber>,
     /// Serial port of the robot's programmer, for flash.gdb.
     #[arg(long, default_value = Programmer::DEFAULT, conflicts_with = "to")]
@@ -61,11 +63,12 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let place = arguments.blob.display();
-    let bytes = std::fs::read(&arguments.blob).map_err(|error| about(&place)(format!("cannot be read: {error}")))?;
-    let blob = Blob::decode(&bytes).map_err(about(&place))?;
+    let blob = read_blob(&arguments.blob)?;
+    // A blob is canonical: its file has just the bytes that it encodes to.
+    let bytes = blob_bytes(&blob).map_err(|error| about(&place)(error).of_program())?;
     // A robot that is asked itself says what it computes in.
     if arguments.out.is_some() || arguments.dry_run {
-        check_fit(&blob, arguments.number).map_err(about(&place))?;
+        check_fit(&blob, arguments.number).map_err(unfit(&place))?;
     }
     match (&arguments.to, &arguments.out) {
         (Some(port), _) if arguments.dry_run => rehearse(port, &bytes, &blob, arguments.trial),
@@ -73,6 +76,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         (None, Some(folder)) => write(folder, &bytes, arguments),
         (None, None) => Err(Failure::Input("--to or --out is needed".into())),
     }
+}
+
+fn unfit(place: impl fmt::Display) -> impl FnOnce(String) -> Failure {
+    move |fault| Failure::Input(fault).about(place)
 }
 
 /// Refuses what no robot of this number type, or of one of them, could drive with; in the words of such a robot.
@@ -94,7 +101,7 @@ fn check_fit(blob: &Blob, number: Option<NumberType>) -> Result<(), String> {
 
 fn upload(port: &Port, bytes: &[u8], blob: &Blob, arguments: &Arguments) -> Result<Answer, Failure> {
     let identity = blob.identity();
-    let failed = |error: ConnectionError| connection::failed(port, &error);
+    let failed = |error: ConnectionError| connection::failed(port, error);
     let wire = port.open(arguments.baud, CONNECT_LIMIT).map_err(|error| failed(error.into()))?;
     let interrupted = interrupt::watch()?;
     let wire = Interruptible { wire, interrupted: Arc::clone(&interrupted) };
@@ -106,7 +113,7 @@ fn upload(port: &Port, bytes: &[u8], blob: &Blob, arguments: &Arguments) -> Resu
         failed(error.into())
     };
     let (mut client, robot) = Client::connect(wire, Patience::default()).map_err(unless_interrupted)?;
-    check(&robot, bytes, blob, arguments.number).map_err(about(port))?;
+    check(&robot, bytes, blob, arguments.number).map_err(unfit(port))?;
     let style = ProgressStyle::with_template("{msg:11} {bar:40} {bytes}/{total_bytes}");
     let bar = ProgressBar::new(bytes.len() as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     let flashed = flashing::flash(&mut client, bytes, identity, !arguments.trial, |progress| {
@@ -228,12 +235,17 @@ fn check_sector(sector: Sector, force: bool) -> Result<(), Failure> {
 
 fn write(folder: &std::path::Path, bytes: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
     check_sector(arguments.address, arguments.force)?;
-    let sequence = arguments.sequence.map_or_else(UploadNumber::of_clock, Ok).map_err(about("this machine's clock"))?;
+    let sequence = arguments.sequence.map_or_else(UploadNumber::of_clock, Ok).map_err(|_| {
+        Failure::System(
+            "this machine's clock shows a time before 1970 or after 2096; set it, or give --sequence".into(),
+        )
+    })?;
     let file = SlotFile::new(bytes, arguments.address, sequence).map_err(about(arguments.blob.display()))?;
     let paths = SlotPaths::in_folder(folder)?;
     let would = if arguments.dry_run { "would be written" } else { "written" };
     let last = file.address + file.bytes.len() as u32 - 1;
     if !arguments.dry_run {
+        let _lock = take_folder(folder)?;
         file.write(&paths, &arguments.programmer)?;
     }
     let [hex, binary, script] = SlotPaths::NAMES.map(|name| folder.join(name));

@@ -1,6 +1,7 @@
 //! Ctrl-C and its relatives: the first asks for an orderly stop, the second ends the process, and so does [`PATIENCE`].
 
-use super::output;
+use super::exit::Exit;
+use super::{Failure, output};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::io;
@@ -15,17 +16,18 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// How often it is looked whether a stop is asked for.
 const GLANCE: Duration = Duration::from_millis(200);
 
-/// The exit code of a command that was interrupted.
-pub const CODE: u8 = 130;
-
 /// From now on Ctrl-C, SIGTERM and a terminal that goes away (SIGHUP) set the flag that is returned.
 ///
 /// # Errors
-/// What the operating system says.
-pub fn watch() -> io::Result<Arc<AtomicBool>> {
+/// The system's, whatever it says.
+pub fn watch() -> Result<Arc<AtomicBool>, Failure> {
+    watched().map_err(|error| Failure::System(format!("signals cannot be handled: {error}")))
+}
+
+fn watched() -> io::Result<Arc<AtomicBool>> {
     let asked = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
-        flag::register_conditional_shutdown(signal, i32::from(CODE), Arc::clone(&asked))?;
+        flag::register_conditional_shutdown(signal, Exit::Interrupted.code(), Arc::clone(&asked))?;
         flag::register(signal, Arc::clone(&asked))?;
     }
     #[cfg(unix)]
@@ -44,7 +46,7 @@ fn end_in_time(asked: &AtomicBool) {
     }
     thread::sleep(PATIENCE);
     output::notice("grn: interrupted. What was under way is not kept; go on with the same command");
-    std::process::exit(i32::from(CODE));
+    std::process::exit(Exit::Interrupted.code());
 }
 
 /// Whether who started this process has it ignore a signal, as `nohup` does. Where this cannot be read, nobody has.

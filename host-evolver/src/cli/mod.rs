@@ -5,6 +5,8 @@ mod connection;
 mod draw;
 mod eval;
 mod evolve;
+mod exit;
+mod failure;
 mod flash;
 mod interrupt;
 mod options;
@@ -17,23 +19,22 @@ mod simulate;
 mod snippet;
 mod trial;
 
-use crate::files;
+use crate::files::FolderLock;
 use clap::{Parser, Subcommand};
-use std::error::Error;
+use exit::Exit;
+use failure::{Failure, about};
 use std::fmt;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Evolve gene-regulatory-network controllers for robot swarms, prove them in simulation, look at them.
 #[derive(Parser)]
-#[command(name = "grn", version = crate::files::VERSION, after_help = EXIT_CODES)]
+#[command(name = "grn", version = crate::files::VERSION, after_help = exit::WORDS)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
-
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
-                          3 the system failed (disk full, broken device, no threads); 130 interrupted.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -67,61 +68,20 @@ enum Answer {
     No,
 }
 
-/// Why a command did not come to its end.
-enum Failure {
-    /// Bad input, in words that name the file, the place, the value and the way out.
-    Input(String),
-    /// The system failed: a full disk, a device that breaks. The same command may work another time.
-    System(String),
-    Interrupted(String),
-    /// A command line that clap has refused in its own words.
-    Told,
-}
-
-impl Failure {
-    /// Whose fault an error is follows from what lies under it.
-    fn new(error: &(dyn Error + 'static)) -> Failure {
-        let mut message = error.to_string();
-        let mut of_system = false;
-        let mut link = Some(error);
-        while let Some(error) = link {
-            let text = error.to_string();
-            if !message.contains(&text) {
-                message = format!("{message}: {text}");
-            }
-            of_system |= error.downcast_ref().is_some_and(files::is_fault_of_system);
-            link = error.source();
-        }
-        if let Some(snippet) = snippet::of(error) {
-            message = format!("{message}\n{snippet}");
-        }
-        if of_system { Failure::System(message) } else { Failure::Input(message) }
-    }
-
-    /// Puts in front what it is about.
-    fn about(self, place: impl fmt::Display) -> Failure {
-        match self {
-            Failure::Input(message) => Failure::Input(format!("{place}: {message}")),
-            Failure::System(message) => Failure::System(format!("{place}: {message}")),
-            other => other,
-        }
-    }
-}
-
-impl<E: Error + 'static> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Failure::new(&error)
-    }
-}
-
 /// The command line as it was given, for whoever wants a folder that it writes.
 fn this_command() -> String {
     std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }
 
-/// Prefixes an error that does not know which file it is about.
-fn about<E: Into<Box<dyn Error>>>(place: impl fmt::Display) -> impl FnOnce(E) -> Failure {
-    move |error| Failure::new(error.into().as_ref()).about(place)
+/// Takes the folder of an `--out` that is neither a run's nor a campaign's.
+fn take_folder(folder: &Path) -> Result<FolderLock, Failure> {
+    let manifest = folder.join("manifest.json");
+    if manifest.exists() {
+        let fault =
+            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
+        return Err(Failure::Input(format!("{}: {fault}", manifest.display())));
+    }
+    Ok(FolderLock::take(folder, &this_command())?)
 }
 
 /// That the system gives no threads is not the fault of who asks for them.
@@ -135,23 +95,25 @@ pub fn run() -> ExitCode {
         Ok(cli) => answer(&cli.command),
         Err(error) => explain(&error),
     };
-    match answer {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::from(1),
-        Err(Failure::Input(message)) => {
-            output::notice(format_args!("grn: {message}"));
-            ExitCode::from(2)
+    let exit = match answer {
+        Ok(Answer::Yes) => Exit::Yes,
+        Ok(Answer::No) => Exit::No,
+        Err(failure) => told(&failure),
+    };
+    exit.into()
+}
+
+/// Says why a command failed, and how the process ends.
+fn told(failure: &Failure) -> Exit {
+    match failure {
+        Failure::Input(message) | Failure::System(message) => output::notice(format_args!("grn: {message}")),
+        Failure::Program(message) => {
+            output::notice(format_args!("grn: {message}\nThis is a fault of grn itself: please report it."));
         }
-        Err(Failure::Told) => ExitCode::from(2),
-        Err(Failure::System(message)) => {
-            output::notice(format_args!("grn: {message}"));
-            ExitCode::from(3)
-        }
-        Err(Failure::Interrupted(message)) => {
-            output::notice(format_args!("grn: interrupted. {message}"));
-            ExitCode::from(interrupt::CODE)
-        }
+        Failure::Interrupted(message) => output::notice(format_args!("grn: interrupted. {message}")),
+        Failure::Told => {}
     }
+    failure.exit()
 }
 
 /// Prints help or the version if they were asked for, else what is wrong with the command line.
@@ -159,7 +121,7 @@ fn explain(error: &clap::Error) -> Result<Answer, Failure> {
     let printed = error.print().and_then(|()| std::io::stdout().flush());
     match printed {
         _ if error.use_stderr() => Err(Failure::Told),
-        Err(failure) if failure.kind() != ErrorKind::BrokenPipe => Err(Failure::new(&failure).about("standard output")),
+        Err(failure) if failure.kind() != ErrorKind::BrokenPipe => Err(output::cannot_print(&failure)),
         _ => Ok(Answer::Yes),
     }
 }
@@ -177,5 +139,31 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Show(arguments) => show::run(arguments),
         Command::Eval(arguments) => eval::run(arguments),
         Command::Draw(arguments) => draw::run(arguments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// Options whose values are words, names or paths. Every other one takes numbers, which may have a minus sign: what is
+    /// wrong with them is then told with their range, and not that there is no option `-1`.
+    const WORDS: [&str; 9] = ["image", "merge", "motifs", "number", "objectives", "out", "programmer", "target", "to"];
+
+    #[test]
+    fn every_option_with_a_number_takes_a_minus_sign() {
+        let forgotten: Vec<String> = Cli::command()
+            .get_subcommands()
+            .flat_map(|command| {
+                let options = command.get_opts().filter(|option| option.get_action().takes_values());
+                let wrong = options.filter(|option| {
+                    let name = option.get_long().unwrap_or_default();
+                    option.is_allow_hyphen_values_set() == WORDS.contains(&name)
+                });
+                wrong.map(|option| format!("{} {option}", command.get_name())).collect::<Vec<_>>()
+            })
+            .collect();
+        assert!(forgotten.is_empty(), "{forgotten:?}");
     }
 }

@@ -24,6 +24,21 @@ pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
     })
 }
 
+/// Parses a seed.
+pub fn seed(text: &str) -> Result<u64, String> {
+    within(text, &Range::new(0, u64::MAX, "(a whole one)"))
+}
+
+/// Parses a baud rate.
+pub fn baud(text: &str) -> Result<u32, String> {
+    within(text, &Range::new(1, u32::MAX, "(a whole one; usual are 9600, 115200 and 230400)"))
+}
+
+/// Parses a speed of targets; what is possible follows from world and robots, too.
+pub fn speed(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "must be a number, metres per second".into())
+}
+
 /// World metres per scenario metre: what a blob can hold.
 pub fn scale(text: &str) -> Result<f32, String> {
     within(text, &Range::new(0.01, 10.0, ""))

@@ -27,13 +27,18 @@ pub fn product(text: impl fmt::Display) -> Result<Reader, Failure> {
     match line(io::stdout(), text) {
         Ok(()) => Ok(Reader::Listens),
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(Reader::Gone),
-        Err(error) => Err(Failure::System(format!("standard output: cannot be written: {error}"))),
+        Err(error) => Err(cannot_print(&error)),
     }
+}
+
+/// Standard output is the system's, whatever it says.
+pub fn cannot_print(error: &io::Error) -> Failure {
+    Failure::System(format!("standard output: cannot be written: {error}"))
 }
 
 /// Prints a value as JSON.
 pub fn product_json(value: &serde_json::Value) -> Result<Reader, Failure> {
-    product(serde_json::to_string_pretty(value)?)
+    product(format_args!("{value:#}"))
 }
 
 fn line(mut stream: impl Write, text: impl fmt::Display) -> io::Result<()> {

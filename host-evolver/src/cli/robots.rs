@@ -1,10 +1,11 @@
 //! `grn robots`.
 
 use super::connection::{ConnectionError, DEFAULT_BAUD, connect, described, failed};
-use super::{Answer, Failure, output};
+use super::{Answer, Failure, options, output};
 use grn_core::robot::link::message::{About, RobotStatus, Status};
 use grn_link::{Patience, Port};
 use std::collections::BTreeMap;
+use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -15,7 +16,7 @@ pub struct Arguments {
     /// Where to ask: serial ports, tcp:HOST:PORT, unix:PATH [default: all serial ports].
     ports: Vec<Port>,
     /// Baud rate of serial ports.
-    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = options::baud, allow_hyphen_values = true)]
     baud: u32,
 }
 
@@ -29,7 +30,9 @@ const THREADS: usize = 32;
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let mut ports = Vec::new();
-    for port in if arguments.ports.is_empty() { Port::serial_ports()? } else { arguments.ports.clone() } {
+    for port in
+        if arguments.ports.is_empty() { Port::serial_ports().map_err(no_ports)? } else { arguments.ports.clone() }
+    {
         // Asked twice at the same time a port would answer only once.
         if !ports.contains(&port) {
             ports.push(port);
@@ -45,10 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         found |= answer.is_ok();
         let told = match answer {
             Ok((about, status)) => format!("{port}: {}", described(&about, &status)),
-            Err(error) => match failed(port, &error) {
-                Failure::Input(message) | Failure::System(message) => message,
-                Failure::Interrupted(_) | Failure::Told => return,
-            },
+            Err(error) => failed(port, error).message().unwrap_or_default().to_owned(),
         };
         if printed.is_ok() {
             printed = output::product(told).map(|_| ());
@@ -56,6 +56,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     });
     printed?;
     Ok(if found { Answer::Yes } else { Answer::No })
+}
+
+/// A system that does not tell its ports is no fault of who asks for them.
+fn no_ports(error: io::Error) -> Failure {
+    Failure::System(format!("the serial ports cannot be listed: {error}; name one"))
 }
 
 type Asked = Result<(About, RobotStatus), ConnectionError>;

@@ -1,6 +1,6 @@
 //! `grn scatter`.
 
-use super::options::within;
+use super::options::{self, within};
 use super::{Answer, Failure, output};
 use crate::files;
 use firmware_sim::scenario::{InputError, RandomObstacles, Scenario, random};
@@ -11,16 +11,16 @@ pub struct Arguments {
     /// The world whose walls are replaced.
     scenario: PathBuf,
     /// Seed of the obstacles.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Share of the region that obstacles cover, at most 0.5.
-    #[arg(long, default_value_t = 0.05, value_parser = |text: &str| within(text, &random::DENSITY))]
+    #[arg(long, default_value_t = 0.05, value_parser = |text: &str| within(text, &random::DENSITY), allow_hyphen_values = true)]
     density: f64,
     /// Least and greatest radius, metres.
-    #[arg(long, num_args = 2, value_names = ["LEAST", "GREATEST"], default_values_t = [0.3, 0.9], value_parser = |text: &str| within(text, &random::RADIUS))]
+    #[arg(long, num_args = 2, value_names = ["LEAST", "GREATEST"], default_values_t = [0.3, 0.9], value_parser = |text: &str| within(text, &random::RADIUS), allow_hyphen_values = true)]
     radius: Vec<f64>,
     /// Kept free on both sides of every target's path, metres.
-    #[arg(long, default_value_t = 1.45, value_parser = |text: &str| within(text, &random::CLEARANCE))]
+    #[arg(long, default_value_t = 1.45, value_parser = |text: &str| within(text, &random::CLEARANCE), allow_hyphen_values = true)]
     clearance: f64,
     /// The file to write [default: standard output].
     #[arg(long, value_name = "FILE.toml")]

@@ -21,7 +21,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let blob = read_blob(&arguments.blob)?;
     // A blob is canonical: its file has just the bytes that it encodes to.
-    let bytes = blob_bytes(&blob).map_err(about(arguments.blob.display()))?.len();
+    let bytes = blob_bytes(&blob).map_err(|error| about(arguments.blob.display())(error).of_program())?.len();
     if arguments.json {
         output::product_json(&as_json(&blob, bytes))?;
     } else {

@@ -1,8 +1,8 @@
 //! `grn simulate`.
 
-use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
-use crate::emulation::{self, Emulation};
+use crate::emulation::{self, Emulation, EmulationError};
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::record;
 use crate::simulation::{
@@ -44,16 +44,16 @@ pub struct Arguments {
     /// The world.
     scenario: PathBuf,
     /// Seed of everything random.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
     /// How many robots.
-    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots)]
+    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots, allow_hyphen_values = true)]
     robots: usize,
     /// World metres per scenario metre [default: the blob's].
-    #[arg(long, value_parser = options::scale)]
+    #[arg(long, value_parser = options::scale, allow_hyphen_values = true)]
     scale: Option<f32>,
     /// Speed of the target with the longest path, metres per second in the world. Slow targets make long runs.
-    #[arg(long, default_value_t = DEFAULT_SPEED)]
+    #[arg(long, default_value_t = DEFAULT_SPEED, value_parser = options::speed, allow_hyphen_values = true)]
     speed: f64,
     /// Number type the robots compute in.
     #[arg(long, default_value = "f32")]
@@ -61,9 +61,9 @@ pub struct Arguments {
     /// Where controllers run: all in this process, or some in QEMU, from the image that is flashed.
     #[arg(long, default_value = "native")]
     target: Target,
-    /// How many of the robots are emulated with --target qemu.
-    #[arg(long, default_value_t = DEFAULT_EMULATED, value_parser = robots)]
-    emulated: usize,
+    /// How many of the robots are emulated with --target qemu [default: 4, or all if there are fewer].
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
+    emulated: Option<usize>,
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
@@ -86,6 +86,7 @@ enum Target {
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    check_emulation(arguments)?;
     let mut blob = read_blob(&arguments.blob)?;
     if let Some(scale) = arguments.scale {
         blob.scale = scale;
@@ -120,6 +121,22 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
 
+/// Refuses options of emulators without emulators, which would not do what they say, and more emulators than robots.
+fn check_emulation(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { target, robots, emulated, image, .. } = arguments;
+    let without = |option: String| {
+        Err(Failure::Input(format!("{option} is for robots in emulators; add --target qemu, or leave it out")))
+    };
+    match (target, image, emulated) {
+        (Target::Native, Some(image), _) => without(format!("--image {}", image.display())),
+        (Target::Native, None, Some(emulated)) => without(format!("--emulated {emulated}")),
+        (Target::Qemu, _, Some(emulated)) if emulated > robots => {
+            Err(Failure::Input(format!("--emulated {emulated}: must be at most the number of robots, {robots}")))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn simulated(
     arguments: &Arguments,
     blob: &Blob,
@@ -139,10 +156,14 @@ fn simulated(
                     NumberType::Q8_24 => "robot-q8_24",
                 })
             });
-            let emulation = Emulation { image, robots: arguments.emulated.min(config.robots) };
-            let path = &arguments.blob;
-            with_progress(path, stop, |watch| {
-                emulation::simulate(blob, scenario, config, number, &emulation, observer, watch)
+            let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.robots));
+            let emulation = Emulation { image, robots };
+            with_progress(stop, |watch| {
+                let simulated = emulation::simulate(blob, scenario, config, number, &emulation, observer, watch);
+                simulated.map_err(|error| match error {
+                    EmulationError::Simulation(error) => of_blob(&arguments.blob)(error),
+                    error => error.into(),
+                })
             })
         }
         #[cfg(not(unix))]
@@ -166,7 +187,8 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
         }
-        _ => error.into(),
+        // What nobody can set.
+        _ => Failure::from(error).of_program(),
     })
 }
 
@@ -180,13 +202,22 @@ pub fn watched(
     observer: &mut dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Simulation, Failure> {
-    with_progress(path, stop, |watch| simulation::simulate(blob, scenario, config, number, observer, watch))
+    with_progress(stop, |watch| {
+        simulation::simulate(blob, scenario, config, number, observer, watch).map_err(of_blob(path))
+    })
+}
+
+/// Names the blob where that is what is wrong.
+fn of_blob(path: &Path) -> impl Fn(SimulationError) -> Failure {
+    move |error| match error {
+        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(path.display())(error),
+        SimulationError::Config(_) | SimulationError::Brain(_) => error.into(),
+    }
 }
 
 fn with_progress(
-    blob: &Path,
     stop: &AtomicBool,
-    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, SimulationError>,
+    simulate: impl FnOnce(&mut dyn FnMut(f64) -> ControlFlow<()>) -> Result<Option<Simulation>, Failure>,
 ) -> Result<Simulation, Failure> {
     let style = progress::style("simulating {bar:40} {percent:>3} % · {left}", &progress::Found::default());
     let bar = ProgressBar::new(1000).with_style(style);
@@ -195,22 +226,12 @@ fn with_progress(
         if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     bar.finish_and_clear();
-    let result = result.map_err(|error| match &error {
-        SimulationError::Load(_) | SimulationError::NoPattern(_) => about(blob.display())(error),
-        SimulationError::Config(_) | SimulationError::Brain(_) | SimulationError::Emulator(_) => error.into(),
-    });
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
-    let manifest = folder.join("manifest.json");
-    if manifest.exists() {
-        let fault =
-            "this is the folder of a run or campaign, which holds its own files only; choose another with --out";
-        return Err(about(manifest.display())(fault));
-    }
-    let lock = FolderLock::take(folder, &this_command())?;
+    let lock = take_folder(folder)?;
     record::FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }

@@ -3,7 +3,7 @@
 use super::connection::{
     CONNECT_LIMIT, ConnectionError, DEFAULT_BAUD, connect, described, failed, hexadecimal, in_charge,
 };
-use super::{Answer, Failure, output};
+use super::{Answer, Failure, options, output, told};
 use grn_core::robot::link::Refusal;
 use grn_core::robot::link::message::{Confirm, RollBack, Status};
 use grn_core::robot::slots::Stage;
@@ -15,7 +15,7 @@ pub struct Arguments {
     #[arg(required = true, value_name = "PORT")]
     ports: Vec<Port>,
     /// Baud rate of serial ports.
-    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = DEFAULT_BAUD, value_parser = options::baud, allow_hyphen_values = true)]
     baud: u32,
 }
 
@@ -35,12 +35,10 @@ pub fn run(arguments: &Arguments, end: End) -> Result<Answer, Failure> {
         match end_trial(port, arguments.baud, end) {
             Ok(told) => output::report(format!("{port}: {told}")),
             Err(error) => {
-                let failed = failed(port, &error);
-                match (&failure, failed) {
-                    (Some(_), Failure::Input(message) | Failure::System(message)) => {
-                        output::notice(format!("grn: {message}"));
-                    }
-                    (_, failed) => failure = Some(failed),
+                let failed = failed(port, error);
+                match failure {
+                    Some(_) => drop(told(&failed)),
+                    None => failure = Some(failed),
                 }
             }
         }

@@ -14,6 +14,25 @@ pub fn grn() -> Command {
     command
 }
 
+/// The command as a user who may not do everything, in a folder with a blob and a world: as root a faulty program could
+/// replace the machine's own devices, and nothing is read-only.
+#[cfg(unix)]
+pub fn guest(folder: &Path) -> std::io::Result<Command> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
+    let program = folder.join("grn");
+    std::fs::copy(env!("CARGO_BIN_EXE_grn"), &program)?;
+    std::fs::copy(model(), folder.join("blob.grn"))?;
+    std::fs::copy(channel(), folder.join("channel.toml"))?;
+    let is_root = text(&Command::new("id").arg("-u").output()?.stdout).trim() == "0";
+    let mut command = Command::new(if is_root { Path::new("setpriv") } else { &program });
+    if is_root {
+        command.args(["--reuid", "65534", "--clear-groups"]).arg(&program);
+    }
+    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    Ok(command)
+}
+
 pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
 }

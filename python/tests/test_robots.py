@@ -44,16 +44,6 @@ def test_robots_give_the_bits_of_the_simulator(blob, channel):
         assert first.tick(**percept) == second.tick(**percept)
 
 
-def test_a_robot_without_a_pose_stops_in_the_end(blob):
-    robot = grn.Robot(blob, 0)
-    for _ in range(32):
-        command = robot.tick(position=(1.0, 2.0), heading=0.0, targets={0: (2.2, 2.0)})
-    assert command.steps_per_s != (0, 0)
-    for _ in range(32):
-        command = robot.tick()
-    assert command.steps_per_s == (0, 0)
-
-
 @pytest.mark.parametrize(
     ("percept", "text"),
     [

@@ -123,7 +123,7 @@ fn blob(scenario: &Scenario, scale: f64) -> Blob {
 
 /// A swarm under way: past the start, when buffers have grown, news has spread and robots have met.
 fn swarm<B: Brain>(scenario: &Scenario, scale: f64, brain: impl FnMut(usize) -> B) -> Swarm<B> {
-    let config = SwarmConfig { robots: ROBOTS, scale, settle_s: 0.0, ..SwarmConfig::default() };
+    let config = SwarmConfig { scale, settle_s: 0.0, ..SwarmConfig::default() }.with_robots(ROBOTS);
     let mut swarm = expect(Swarm::new(scenario, config, brain));
     run(&mut swarm);
     swarm
@@ -164,7 +164,7 @@ fn closed_loop<S: Scalar>(group: &mut BenchmarkGroup<'_, WallTime>, scenario: &S
 fn records<S: Scalar>(scenario: &Scenario, scale: f64) -> Vec<Record<S>> {
     let mut swarm = real::<S>(scenario, scale, Some(ROBOTS / REPLAYED));
     run(&mut swarm);
-    swarm.brains().iter().filter_map(|brain| brain.record.clone()).collect()
+    swarm.brains().filter_map(|brain| brain.record.clone()).collect()
 }
 
 /// Gives these controllers their percepts, tick by tick as in a swarm.

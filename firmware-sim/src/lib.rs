@@ -8,10 +8,15 @@
 //! | [`geometry`] | polygons, walls, rays, hulls |
 //! | [`scenario`] | the TOML world: target paths, walls, morphogens, ring |
 //! | [`random`] | one portable random stream per component |
+//! | [`lab`] | the laboratory: the conditions of a run, as a file, and laboratories around it |
+//! | [`timing`] | when robots think |
 //! | [`body`] | wheels and differential drive |
 //! | [`grid`] | neighbour queries |
-//! | [`sensors`] | localisation, proximity, far sense |
-//! | [`radio`] | broadcasts with range and loss |
+//! | [`bursts`] | failures in rows |
+//! | [`localisation`] | a tracking system with delay, gaps, noise and drift |
+//! | [`proximity`] | the ring of proximity sensors |
+//! | [`sensors`] | the mother robots' far sense |
+//! | [`radio`] | broadcasts with range, delay and loss |
 //! | [`contacts`] | collisions, resolved and counted |
 //! | [`brain`] | what drives a robot |
 //! | [`config`] | a run's parameters |
@@ -21,27 +26,33 @@
 //! | [`flash`] | a robot's flash, with power loss |
 //! | [`link`] | robots behind a link as parts of a swarm: emulated, on a bad wire |
 //!
-//! Results are the same bits on every machine: single-threaded, seeded, and without the platform's transcendental
-//! functions.
+//! Results are the same bits on every machine and for any number of threads: seeded, and without the platform's
+//! transcendental functions.
 
 pub mod body;
 pub mod brain;
+pub mod bursts;
 pub mod config;
 pub mod contacts;
 pub mod flash;
 pub mod geometry;
 pub mod grid;
+pub mod lab;
 pub mod link;
+pub mod localisation;
 pub mod metrics;
+pub mod proximity;
 pub mod radio;
 pub mod random;
 pub mod scenario;
 pub mod sensors;
 pub mod swarm;
+pub mod timing;
 pub mod trace;
 
 pub use brain::{Brain, BrainError};
-pub use config::{ConfigError, Stop, SwarmConfig};
+pub use config::{Stop, SwarmConfig};
+pub use lab::Laboratory;
 pub use metrics::{Meter, Metrics, MetricsOptions};
 pub use scenario::{InputError, Scenario};
 pub use swarm::{Outcome, Progress, StepError, Swarm};

@@ -1,229 +1,280 @@
-//! Broadcasts between robots: limited range, independent loss, the nearest first. Walls do not block it.
+//! Broadcasts between robots: limited range, delay, losses, the nearest first.
+//!
+//! How a message travels:
+//!
+//! 1. A robot sends it at one of its control ticks. If it does not fit into one packet, its packets leave one a frame.
+//! 2. In the frame after its last packet, and `latency_s` later, it can be heard from where its sender was in that frame.
+//! 3. A receiver in range misses it or not: alone, in a row of losses, or because a wall or a robot is in between.
+//! 4. Of what it hears between two of its ticks a robot keeps as many messages as its inbox holds, nearest first.
 
+mod letter;
+
+pub use letter::Letter;
+
+use crate::bursts::Bursts;
+use crate::geometry::{Walls, length_squared};
 use crate::grid::Grid;
-use crate::random::{Component, Stream};
+use crate::lab::{self, MOST_PACKETS};
+use crate::random::{Component, Draws, Stream};
+use crate::timing::{FRAME_US, frames_in};
 use grn_core::geometry::Point;
-use grn_core::robot::message::MAX_REPORTED_OBSTACLES;
+use grn_core::robot::epuck2::BODY_RADIUS;
 use grn_core::robot::percept::MAX_HEARD;
-use grn_core::robot::{Heard, Message, Millimetres, ObstacleReport, TargetReport};
-use serde::{Deserialize, Serialize};
+use grn_core::robot::{Heard, Message};
+use letter::corrupted;
 
-/// How far the radio reaches and how much it loses.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RadioConfig {
-    /// Farthest reception, real metres, positive; not scaled with the world.
-    pub range_m: f64,
-    /// Probability in [0, 1] that a receiver in range misses a message; independent for every receiver and message.
-    pub loss: f64,
-}
+/// The farthest that noise carries a range, in standard deviations.
+const MOST_DEVIATIONS: f64 = 3.5;
 
-impl Default for RadioConfig {
-    /// The range-and-bearing board: 0.7 m, and one message in ten lost.
-    fn default() -> Self {
-        RadioConfig { range_m: 0.7, loss: 0.1 }
-    }
-}
-
-/// The ether: holds what was sent in the last tick and delivers it in the next.
+/// The ether: holds what was sent in the last frames until everybody can have heard it.
 #[derive(Debug)]
-pub struct Radio {
-    range_squared: f64,
-    /// Below this draw a message is lost.
-    lost_below: u64,
-    grid: Grid,
-    sent: Ether,
-    sending: Ether,
-    /// Messages lost, by receiver.
-    losses: Vec<Stream>,
+pub struct Ether {
+    radio: lab::Radio,
+    seed: u64,
+    latency_frames: u64,
+    /// Below this draw a message of so many packets (less one) is lost.
+    lost_below: [u64; MOST_PACKETS],
+    bursts: Option<Bursts>,
+    /// The frames that can still be heard, and those to come; frame f is at f modulo their number.
+    frames: Vec<Sent>,
+    now: u64,
 }
 
-/// The broadcasts of one tick.
+/// The broadcasts whose last packet was sent in one frame.
 #[derive(Debug)]
-struct Ether {
+struct Sent {
+    frame: u64,
     senders: Vec<u16>,
-    /// By robot number; only those of `senders` are of this tick.
-    letters: Vec<Letter>,
+    /// By robot number; only those of `senders` are of this frame.
+    letters: Vec<(Letter, u8)>,
+    /// Where senders were at the frame's end.
+    grid: Grid,
 }
 
-/// A message in a form of fixed size, which is copied faster than lists of variable length.
-#[derive(Clone, Copy, Debug)]
-struct Letter {
-    sender: u16,
-    position: Millimetres,
-    target: Option<TargetReport>,
-    reports: usize,
-    obstacles: [ObstacleReport; MAX_REPORTED_OBSTACLES],
+/// One robot's end of the radio.
+#[derive(Clone, Debug)]
+pub struct Receiver {
+    robot: u16,
+    stream: Stream,
+    failing: bool,
+    /// The first frame whose broadcasts it has not been offered.
+    next_frame: u64,
 }
 
-impl Letter {
-    const BLANK: Letter = Letter {
-        sender: 0,
-        position: Millimetres { x: 0, y: 0 },
-        target: None,
-        reports: 0,
-        obstacles: [ObstacleReport { position: Millimetres { x: 0, y: 0 }, age: 0 }; MAX_REPORTED_OBSTACLES],
-    };
-
-    fn of(message: &Message) -> Self {
-        let Message { sender, position, target, obstacles } = message;
-        let mut letter =
-            Letter { sender: *sender, position: *position, target: *target, reports: obstacles.len(), ..Letter::BLANK };
-        for (slot, report) in letter.obstacles.iter_mut().zip(obstacles) {
-            *slot = *report;
-        }
-        letter
-    }
-
-    fn message(&self) -> Message {
-        let obstacles = self.obstacles.into();
-        let mut message = Message { sender: self.sender, position: self.position, target: self.target, obstacles };
-        message.obstacles.truncate(self.reports);
-        message
-    }
-}
-
-/// A sender as a number that sorts by distance and then by number: the squared distance's bits (nonnegative floats sort
-/// like their bits), of which the last eight give way to the sender's number, at most 255.
-fn rank(sender: u16, squared: f64) -> u64 {
-    (squared.to_bits() & !0xff) | u64::from(sender & 0xff)
+/// A sender as a number that sorts by distance, then by the frame, then by the sender's number: the squared distance's bits
+/// (nonnegative floats sort like their bits), of which the last twenty give way.
+fn rank(sender: u16, age: u64, squared: f64) -> u64 {
+    (squared.to_bits() & !0xf_ffff) | (age & 0xf) << 16 | u64::from(sender)
 }
 
 /// Ranks after every sender.
 const NOBODY: u64 = u64::MAX;
+/// The most frames that one tick of a receiver covers: a tick takes at most 0.2 s.
+const MOST_OFFERED: u64 = 15;
 
-impl Radio {
+impl Ether {
     /// An empty ether for this many robots.
-    pub fn new(config: RadioConfig, seed: u64, robots: usize) -> Self {
-        let ether = || Ether { senders: Vec::with_capacity(robots), letters: vec![Letter::BLANK; robots] };
-        Radio {
-            range_squared: config.range_m * config.range_m,
-            lost_below: (config.loss * 4_294_967_296.0) as u64,
-            grid: Grid::new(config.range_m, robots),
-            sent: ether(),
-            sending: ether(),
-            losses: (0..robots).map(|robot| Stream::new(seed, Component::Radio, robot)).collect(),
+    pub fn new(radio: &lab::Radio, seed: u64, robots: usize) -> Self {
+        let latency_frames = frames_in(radio.latency_s);
+        let kept = latency_frames + MOST_OFFERED + MOST_PACKETS as u64 + 1;
+        let reach = radio.range_m * (1.0 + MOST_DEVIATIONS * radio.range_noise);
+        let sent = |_| Sent {
+            frame: u64::MAX,
+            senders: Vec::new(),
+            letters: vec![(Letter::BLANK, 0); robots],
+            grid: Grid::new(reach, robots),
+        };
+        let loss = if radio.burst_s > 0.0 { 0.0 } else { radio.loss };
+        let mut arrived = 1.0;
+        let lost_below = [(); MOST_PACKETS].map(|()| {
+            arrived *= 1.0 - loss;
+            ((1.0 - arrived) * 4_294_967_296.0) as u64
+        });
+        Ether {
+            radio: *radio,
+            seed,
+            latency_frames,
+            lost_below,
+            bursts: (radio.burst_s > 0.0).then(|| Bursts::new(radio.loss, radio.burst_s, FRAME_US as f64 * 1e-6)),
+            frames: (0..kept).map(sent).collect(),
+            now: 0,
         }
     }
 
-    /// Begins a tick: says where the robots are when messages arrive. What was sent in a tick that was broken off is void.
-    pub fn locate(&mut self, positions: &[Point<f64>]) {
-        self.sending.senders.clear();
-        self.grid.rebuild(self.sent.senders.iter().map(|&sender| (sender, positions[usize::from(sender)])));
+    /// Robot number `robot`'s end.
+    pub fn receiver(&self, robot: usize) -> Receiver {
+        let mut stream = Stream::new(self.seed, Component::Radio, robot);
+        let failing = self.bursts.is_some_and(|bursts| bursts.first(&mut stream));
+        Receiver { robot: robot as u16, stream, failing, next_frame: 0 }
     }
 
-    /// What `sender` broadcasts in this tick, if anything, to be heard in the next; asked once a tick.
-    pub fn send(&mut self, sender: usize, message: Option<&Message>) {
-        if let Some(message) = message {
-            self.sending.senders.push(sender as u16);
-            self.sending.letters[sender] = Letter::of(message);
+    fn slot(&self, frame: u64) -> usize {
+        (frame % self.frames.len() as u64) as usize
+    }
+
+    /// Begins frame number `frame`: says where robots are now. What was sent before can be heard from there.
+    pub fn begin(&mut self, frame: u64, positions: &[Point<f64>]) {
+        self.now = frame;
+        if let Some(last) = frame.checked_sub(1) {
+            let slot = self.slot(last);
+            let Sent { senders, grid, .. } = &mut self.frames[slot];
+            grid.rebuild(senders.iter().map(|&sender| (sender, positions[usize::from(sender)])));
         }
+        // The slot of the last frame in which a message that is sent now can end.
+        let last = frame + MOST_PACKETS as u64 - 1;
+        let slot = self.slot(last);
+        let begun = if frame == 0 { 0..=last } else { last..=last };
+        begun.for_each(|frame| {
+            let slot = self.slot(frame);
+            self.frames[slot].frame = frame;
+            self.frames[slot].senders.clear();
+        });
+        debug_assert_eq!(self.frames[slot].frame, last);
     }
 
-    /// Ends a tick: what was sent in it can now be heard, and nothing older.
-    pub fn tick_over(&mut self) {
-        core::mem::swap(&mut self.sent, &mut self.sending);
+    /// What `sender` broadcasts in this frame.
+    pub fn send(&mut self, sender: usize, letter: &Letter) {
+        let packets = match self.radio.payload_bytes {
+            0 => 1,
+            payload => lab::packets(&letter.message(), payload).clamp(1, MOST_PACKETS),
+        };
+        let slot = self.slot(self.now + packets as u64 - 1);
+        let Sent { senders, letters, .. } = &mut self.frames[slot];
+        senders.push(sender as u16);
+        letters[sender] = (*letter, packets as u8 - 1);
     }
 
-    /// What `receiver` hears at `position`: of the messages from senders in range, each lost or not
-    /// by an independent draw, as many as the inbox holds, nearest first (equally near ones by number).
-    pub fn deliver(&mut self, receiver: usize, position: Point<f64>) -> heapless::Vec<Heard, MAX_HEARD> {
+    /// What a receiver hears at the time `now_us`, in this frame, at `position`: of what it was not offered before.
+    pub fn deliver(
+        &self,
+        receiver: &mut Receiver,
+        position: Point<f64>,
+        now_us: u64,
+        obstruction: &Obstruction<'_>,
+    ) -> heapless::Vec<Heard, MAX_HEARD> {
         let mut heard = heapless::Vec::new();
-        if self.sent.senders.is_empty() {
-            return heard;
-        }
-        let draws = self.losses[receiver].draws();
+        let Some(last) = self.now.checked_sub(1 + self.latency_frames) else { return heard };
+        let first = receiver.next_frame.max((last + 1).saturating_sub(MOST_OFFERED));
+        receiver.next_frame = last + 1;
         let mut nearest = [NOBODY; MAX_HEARD];
-        self.grid.around(position, |sender, squared| {
-            let in_range = (squared <= self.range_squared) & (usize::from(sender) != receiver);
-            let mut moving = if in_range { rank(sender, squared) } else { NOBODY };
-            if moving < nearest[MAX_HEARD - 1] && u64::from(draws.at(sender)) >= self.lost_below {
-                for slot in &mut nearest {
+        for frame in first..=last {
+            self.offer(frame, last - frame, receiver, position, obstruction, &mut nearest);
+        }
+        for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
+            let (sender, frame) = ((rank & 0xffff) as usize, last - (rank >> 16 & 0xf));
+            let (letter, _) = &self.frames[self.slot(frame)].letters[sender];
+            let age_ms = ((now_us.saturating_sub(letter.sent_us) + 500) / 1000).min(u64::from(u16::MAX)) as u16;
+            if let Some(message) = self.received(letter.message(), receiver.robot, frame) {
+                // As many as fit were chosen.
+                let _ = heard.push(Heard { message, age_ms });
+            }
+        }
+        heard
+    }
+
+    /// Sorts those of one frame's messages that the receiver does not miss in among the nearest.
+    fn offer(
+        &self,
+        frame: u64,
+        age: u64,
+        receiver: &mut Receiver,
+        position: Point<f64>,
+        obstruction: &Obstruction<'_>,
+        nearest: &mut [u64; MAX_HEARD],
+    ) {
+        if let Some(bursts) = self.bursts {
+            receiver.failing = bursts.next(receiver.failing, &mut receiver.stream);
+            if receiver.failing {
+                return;
+            }
+        }
+        let Sent { senders, letters, grid, .. } = &self.frames[self.slot(frame)];
+        if senders.is_empty() {
+            return;
+        }
+        let own = receiver.robot;
+        let draws = Draws::new(self.seed, Component::Radio, usize::from(own), frame);
+        let limit = self.radio.range_m * self.radio.range_m;
+        grid.around(position, |sender, squared| {
+            let limit = if self.radio.range_noise > 0.0 { self.noisy_limit(draws, sender) } else { limit };
+            let candidate = (squared <= limit) & ((sender != own) | (self.radio.echo > 0.0));
+            let mut moving = if candidate { rank(sender, age, squared) } else { NOBODY };
+            if moving >= nearest[MAX_HEARD - 1] {
+                return;
+            }
+            let packets = usize::from(letters[usize::from(sender)].1);
+            let arrives = u64::from(draws.at(u32::from(sender))) >= self.lost_below[packets];
+            if arrives && self.passes(sender, own, draws, position, obstruction) {
+                for slot in nearest.iter_mut() {
                     (*slot, moving) = (moving.min(*slot), moving.max(*slot));
                 }
             }
         });
-        for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
-            // As many as fit were chosen.
-            let message = self.sent.letters[(rank & 0xff) as usize].message();
-            let _ = heard.push(Heard { message, age_ms: 0 });
+    }
+
+    /// The square of the range for a message of this sender.
+    fn noisy_limit(&self, draws: Draws, sender: u16) -> f64 {
+        // Four uniform draws, as for every noise.
+        let draw = |k: u32| draws.at(u32::from(sender) | k << 16);
+        let halves = |draw: u32| f64::from(draw >> 16) + f64::from(draw & 0xffff);
+        let normal = (halves(draw(1)) - halves(draw(2))) * (1.732_050_807_568_877_2 / 65_536.0);
+        let range = self.radio.range_m * (1.0 + self.radio.range_noise * normal);
+        range * range
+    }
+
+    /// Whether nothing in between stops a message, and whether an own one comes back.
+    fn passes(&self, sender: u16, own: u16, draws: Draws, position: Point<f64>, obstruction: &Obstruction<'_>) -> bool {
+        if sender == own {
+            return f64::from(draws.at(u32::from(sender) | 3 << 16)) < self.radio.echo * 4_294_967_296.0;
         }
-        heard
+        let from = obstruction.positions[usize::from(sender)];
+        (!self.radio.walls_block || !obstruction.wall_between(from, position))
+            && (!self.radio.bodies_block || !obstruction.body_between(from, position))
+    }
+
+    /// The message as it arrives.
+    fn received(&self, message: Message, receiver: u16, frame: u64) -> Option<Message> {
+        if self.radio.corruption <= 0.0 {
+            return Some(message);
+        }
+        let draws = Draws::new(self.seed, Component::Corruption, usize::from(receiver), frame);
+        let sender = u32::from(message.sender);
+        if f64::from(draws.at(sender)) >= self.radio.corruption * 4_294_967_296.0 {
+            return Some(message);
+        }
+        corrupted(&message, draws, sender | 1 << 16)
+    }
+}
+
+/// What can stand between a sender and a receiver.
+#[derive(Clone, Copy, Debug)]
+pub struct Obstruction<'a> {
+    /// Walls.
+    pub walls: &'a Walls,
+    /// Every robot's place.
+    pub positions: &'a [Point<f64>],
+}
+
+impl Obstruction<'_> {
+    fn wall_between(&self, from: Point<f64>, to: Point<f64>) -> bool {
+        let way = to - from;
+        let Some(direction) = way.direction() else { return false };
+        self.walls.ray(from, direction, way.length()).is_some()
+    }
+
+    fn body_between(&self, from: Point<f64>, to: Point<f64>) -> bool {
+        let way = to - from;
+        let squared = length_squared(way);
+        self.positions.iter().any(|&body| {
+            let offset = body - from;
+            let along = offset.dot(way);
+            // Beside the way, not at its ends, where sender and receiver are.
+            let beside = along > 0.0 && along < squared && length_squared(offset) > 0.0 && body != to;
+            let aside = offset.cross(way);
+            beside && aside * aside < BODY_RADIUS * BODY_RADIUS * squared
+        })
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use grn_core::geometry::Vector;
-
-    fn message(sender: usize) -> Message {
-        let position = Millimetres { x: sender as i16, y: 0 };
-        Message { sender: sender as u16, position, target: None, obstacles: Default::default() }
-    }
-
-    /// Who hears whom with robots on a line at these places (metres).
-    fn heard(config: RadioConfig, places: &[f64], receiver: usize) -> Vec<u16> {
-        let positions: Vec<Point<f64>> = places.iter().map(|&x| Vector::new(x, 0.0)).collect();
-        let mut radio = Radio::new(config, 1, places.len());
-        (0..places.len()).for_each(|sender| radio.send(sender, Some(&message(sender))));
-        radio.tick_over();
-        radio.locate(&positions);
-        radio.deliver(receiver, positions[receiver]).iter().map(|heard| heard.message.sender).collect()
-    }
-
-    #[test]
-    fn range_is_sharp_and_nobody_hears_itself() {
-        let lossless = RadioConfig { range_m: 0.7, loss: 0.0 };
-        assert_eq!(heard(lossless, &[0.0, 0.69, 0.71, -0.3, -5.0], 0), [3, 1]);
-        assert!(heard(lossless, &[0.0, 0.8], 0).is_empty());
-        assert!(heard(RadioConfig { loss: 1.0, ..lossless }, &[0.0, 0.1, 0.2], 0).is_empty());
-    }
-
-    #[test]
-    fn the_nearest_fill_the_inbox() {
-        let lossless = RadioConfig { range_m: 10.0, loss: 0.0 };
-        let places: Vec<f64> = (0..60).map(|i| f64::from(i * 7 % 60) * 0.1).collect();
-        let senders = heard(lossless, &places, 0);
-        assert_eq!(senders.len(), MAX_HEARD);
-        let far: Vec<f64> = senders.iter().map(|&s| places[usize::from(s)]).collect();
-        assert_eq!(far, (1..=8).map(|i| f64::from(i) * 0.1).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn losses_are_as_frequent_as_asked_and_independent() {
-        let positions = [0.0, 0.1, 0.2].map(|x| Vector::new(x, 0.0));
-        let mut radio = Radio::new(RadioConfig { range_m: 0.7, loss: 0.3 }, 5, 3);
-        radio.send(1, Some(&message(1)));
-        radio.send(2, Some(&message(2)));
-        radio.tick_over();
-        radio.locate(&positions);
-        let (mut one, mut two, mut both) = (0, 0, 0);
-        let n = 20_000;
-        for _ in 0..n {
-            let heard = radio.deliver(0, positions[0]);
-            let has = |s: u16| heard.iter().any(|h| h.message.sender == s);
-            one += u32::from(has(1));
-            two += u32::from(has(2));
-            both += u32::from(has(1) && has(2));
-        }
-        let share = |count: u32| f64::from(count) / f64::from(n);
-        assert!((share(one) - 0.7).abs() < 0.015 && (share(two) - 0.7).abs() < 0.015, "{one} {two}");
-        assert!((share(both) - 0.49).abs() < 0.015, "{both}");
-    }
-
-    #[test]
-    fn a_crowd_with_heavy_losses_is_searched_to_the_end() {
-        // Half the messages get lost in a crowd of 40, and the inbox still fills, with the nearest of the others.
-        let positions: Vec<Point<f64>> = (0..40).map(|i| Vector::new(f64::from(i) * 0.01, 0.0)).collect();
-        let mut radio = Radio::new(RadioConfig { range_m: 0.7, loss: 0.5 }, 6, 40);
-        (0..40).for_each(|sender| radio.send(sender, Some(&message(sender))));
-        radio.tick_over();
-        radio.locate(&positions);
-        for _ in 0..1000 {
-            let heard = radio.deliver(0, positions[0]);
-            assert_eq!(heard.len(), MAX_HEARD);
-            assert!(heard.windows(2).all(|pair| pair[0].message.sender < pair[1].message.sender));
-        }
-    }
-}
+mod tests;

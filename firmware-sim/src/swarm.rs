@@ -1,30 +1,35 @@
 //! The world in motion: robots with brains, bodies, sensors and radio, around targets on their paths.
 //!
-//! One tick, 1/32 s: every robot perceives the world as the last tick left it, every brain answers, then all bodies move
-//! at once, overlaps are resolved, the targets move on, and the new state is recorded. What a brain broadcasts in tick t
-//! is heard in tick t + 1.
+//! How a frame, 1/32 s, goes:
+//!
+//! 1. Each robot perceives the world as the last frame left it whenever its clock says so, its brain answers, and it drives on.
+//!    This depends on no other robot's part of the frame, so it may happen in any order, and on several threads at once.
+//! 2. Overlaps are resolved, the targets move on, and the new state is recorded.
+//!
+//! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
 mod placement;
+mod unit;
 
-use crate::body::{BodyParameters, Drive, Pose};
+use crate::body::Pose;
 use crate::brain::{Brain, BrainError};
-use crate::config::{ConfigError, SwarmConfig};
+use crate::config::SwarmConfig;
 use crate::contacts::{ContactCounts, Contacts};
-use crate::geometry::{Walls, length_squared};
+use crate::geometry::Walls;
 use crate::grid::{Grid, WallIndex};
-use crate::radio::Radio;
-use crate::random::{Component, Stream};
+use crate::localisation::Tracker;
+use crate::proximity::{ProximityRing, ROBOT_REACH, WALL_REACH};
+use crate::radio::Ether;
 use crate::scenario::{PERCEPTION_RANGE, Scenario};
-use crate::sensors::{
-    ALL_FREE, FarSense, FreeDistances, ProximityRing, ROBOT_REACH, Seen, WALL_REACH, localise, micrometres, unit_q14,
-};
+use crate::sensors::{micrometres, unit_q14};
 use crate::trace::{Frame, Observer, RobotState};
 use core::fmt;
 use core::ops::ControlFlow;
 use grn_core::geometry::Point;
-use grn_core::robot::Percept;
-use grn_core::robot::epuck2::{MAX_WHEEL_SPEED, TICKS_PER_SECOND};
-use grn_core::robot::percept::NOMINAL_TICK_US;
+use grn_core::robot::epuck2::TICKS_PER_SECOND;
+use grn_input::InputError;
+use rayon::prelude::*;
+use unit::{Surroundings, Unit};
 
 /// The farthest coordinate a percept and a message can tell, metres.
 const MAX_COORDINATE: f64 = 32.767;
@@ -70,26 +75,26 @@ impl core::error::Error for StepError {
     }
 }
 
+/// From so many robots on it pays to let several threads think for them.
+const CROWD: usize = 256;
+/// Robots that a thread thinks for at a time.
+const CROWD_PART: usize = 64;
+
 /// A swarm in a world. All lengths in real metres.
 pub struct Swarm<B> {
     config: SwarmConfig,
     world: Scenario,
     samples: Vec<Point<f64>>,
     wall_index: WallIndex,
-    brains: Vec<B>,
-    /// The first tick without a robot, if it breaks down.
-    stop_ticks: Vec<Option<u64>>,
-    drives: Vec<Drive>,
-    poses: Vec<Pose>,
-    positions: Vec<Point<f64>>,
-    wheels: Vec<[i16; 2]>,
-    noise: Vec<Stream>,
-    far_senses: Vec<FarSense>,
+    tracker: Tracker,
     ring: ProximityRing,
-    free: Vec<FreeDistances>,
+    units: Vec<Unit<B>>,
+    poses: Vec<Pose>,
+    /// Where robots were at the beginning of the frame.
+    positions: Vec<Point<f64>>,
     near: Vec<(u16, u16)>,
     grid: Grid,
-    radio: Radio,
+    ether: Ether,
     contacts: Contacts,
     targets: Vec<Point<f64>>,
     tick: u64,
@@ -107,7 +112,7 @@ struct Recorded {
 impl<B> fmt::Debug for Swarm<B> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut shown = f.debug_struct("Swarm");
-        shown.field("config", &self.config).field("tick", &self.tick).field("poses", &self.poses);
+        shown.field("config", &self.config).field("frame", &self.tick).field("positions", &self.positions);
         shown.finish_non_exhaustive()
     }
 }
@@ -116,12 +121,12 @@ impl<B> fmt::Debug for Swarm<B> {
 ///
 /// # Errors
 /// As [`Swarm::new`].
-pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
+pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
     set_up(scenario, config).map(|_| ())
 }
 
 /// The world in real metres, and where the robots start.
-fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>), ConfigError> {
+fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>), InputError> {
     config.check()?;
     let world = scenario.scaled(config.scale);
     let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
@@ -130,21 +135,18 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
     let reach = MAX_COORDINATE - 1.0;
     if farthest > reach {
         let most = config.scale * reach / farthest;
-        return Err(ConfigError {
-            field: "scale",
-            value: config.scale.to_string(),
-            expected: format!(
-                "the world reaches to {farthest:.1} m, but robots can tell 31.7 m only; a scale up to {most:.3} is possible"
-            ),
-        });
+        let way_out = format!(
+            "the world reaches to {farthest:.1} m, but robots can tell 31.7 m only; a scale up to {most:.3} is possible"
+        );
+        return Err(InputError::new("scale", config.scale, way_out));
     }
-    let poses = placement::scattered(&world, config.robots, config.seed).ok_or_else(|| ConfigError {
-        field: "robots",
-        value: config.robots.to_string(),
-        expected: format!(
+    let robots = config.lab.robots.count;
+    let poses = placement::scattered(&world, robots, config.seed).ok_or_else(|| {
+        let way_out = format!(
             "so many robots find no room in the region at scale {}; fewer robots, a larger scale or a larger region are needed",
             config.scale
-        ),
+        );
+        InputError::new("robots", robots, way_out)
     })?;
     Ok((world, poses))
 }
@@ -154,38 +156,33 @@ impl<B: Brain> Swarm<B> {
     /// with the brain that `brain` gives for its number.
     ///
     /// # Errors
-    /// [`ConfigError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m, or
+    /// [`InputError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m, or
     /// the robots find no room.
     pub fn new(
         scenario: &Scenario,
         config: SwarmConfig,
         mut brain: impl FnMut(usize) -> B,
-    ) -> Result<Self, ConfigError> {
+    ) -> Result<Self, InputError> {
         let (world, poses) = set_up(scenario, &config)?;
-        let n = config.robots;
-        let drives = (0..n).map(|robot| {
-            let mut stream = Stream::new(config.seed, Component::Variation, robot);
-            let mut factor = || 1.0 + config.variation * stream.symmetric();
-            Drive::new(&BodyParameters::varied([factor(), factor(), factor()]))
-        });
+        let lab = &config.lab;
+        let n = lab.robots.count;
         let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
+        let tracker = Tracker::new(&lab.localisation);
+        let ether = Ether::new(&lab.radio, config.seed, n);
+        let unit = |robot| Unit::new(robot, brain(robot), &config, &tracker, &ether, samples.len());
+        let units = (0..n).map(unit).collect();
         let mut swarm = Swarm {
             wall_index: WallIndex::new(world.walls(), WALL_REACH),
-            brains: (0..n).map(&mut brain).collect(),
-            stop_ticks: config.stop_ticks(),
-            drives: drives.collect(),
+            ring: ProximityRing::new(&lab.proximity),
+            units,
             positions: poses.iter().map(|pose| pose.position).collect(),
             poses,
-            wheels: vec![[0; 2]; n],
-            noise: (0..n).map(|robot| Stream::new(config.seed, Component::Sensors, robot)).collect(),
-            far_senses: (0..config.mothers).map(|_| FarSense::new(samples.len())).collect(),
             samples,
-            ring: ProximityRing::default(),
-            free: vec![ALL_FREE; n],
+            tracker,
             near: Vec::with_capacity(n * 16),
-            // A tick's motion and pushes stay below the margin that this leaves around touching distance.
+            // A frame's motion and pushes stay below the margin that this leaves around touching distance.
             grid: Grid::new(ROBOT_REACH, n),
-            radio: Radio::new(config.radio, config.seed, n),
+            ether,
             contacts: Contacts::new(n),
             targets: world.targets_at(0.0),
             tick: 0,
@@ -212,7 +209,7 @@ impl<B: Brain> Swarm<B> {
         self.world.walls()
     }
 
-    /// Ticks simulated so far.
+    /// Frames simulated so far.
     pub fn tick(&self) -> u64 {
         self.tick
     }
@@ -228,8 +225,8 @@ impl<B: Brain> Swarm<B> {
     }
 
     /// The brains, by robot number.
-    pub fn brains(&self) -> &[B] {
-        &self.brains
+    pub fn brains(&self) -> impl ExactSizeIterator<Item = &B> {
+        self.units.iter().map(|unit| &unit.brain)
     }
 
     /// The present moment.
@@ -273,18 +270,21 @@ impl<B: Brain> Swarm<B> {
         Ok(Outcome::Finished)
     }
 
-    /// One tick.
+    /// One frame.
     ///
     /// # Errors
-    /// [`StepError`] when a brain fails. No body has moved then, but the brains of robots with lower numbers have already
-    /// computed this tick.
+    /// [`StepError`] when a brain fails; of several, that of the robot with the lowest number. The frame is broken off then,
+    /// and the swarm cannot go on.
     pub fn step(&mut self) -> Result<(), StepError> {
-        self.sense_neighbours();
-        let messages: Result<(), StepError> = (0..self.brains.len()).try_for_each(|robot| self.think(robot));
-        messages?;
-        self.radio.tick_over();
-        for ((pose, drive), &[left, right]) in self.poses.iter_mut().zip(&self.drives).zip(&self.wheels) {
-            *pose = drive.advanced(*pose, left, right);
+        self.grid.rebuild((0..).zip(self.positions.iter().copied()));
+        self.ether.begin(self.tick, &self.positions);
+        self.think_and_drive()?;
+        self.near.clear();
+        for (robot, unit) in (0u16..).zip(&self.units) {
+            if let Some(letter) = &unit.letter {
+                self.ether.send(usize::from(robot), letter);
+            }
+            self.near.extend(unit.near.iter().filter(|&&other| robot < other).map(|&other| (robot, other)));
         }
         let counts = self.contacts.resolve(&mut self.poses, &self.near, self.world.walls(), &self.wall_index);
         for (position, pose) in self.positions.iter_mut().zip(&self.poses) {
@@ -296,51 +296,30 @@ impl<B: Brain> Swarm<B> {
         Ok(())
     }
 
-    /// Finds the pairs near each other, and what every proximity ring sees.
-    fn sense_neighbours(&mut self) {
-        self.grid.rebuild((0..).zip(self.positions.iter().copied()));
-        self.radio.locate(&self.positions);
-        self.free.fill(ALL_FREE);
-        self.near.clear();
-        for (robot, pose) in self.poses.iter().enumerate() {
-            let free = &mut self.free[robot];
-            self.grid.within(pose.position, ROBOT_REACH * ROBOT_REACH, |other, _| {
-                let other_index = usize::from(other);
-                if other_index != robot {
-                    self.ring.sense_robot(pose, self.positions[other_index], free);
-                    if robot < other_index {
-                        self.near.push((robot as u16, other));
-                    }
-                }
-            });
-            for edge in self.wall_index.near(pose.position) {
-                let nearest = edge.nearest(pose.position);
-                if length_squared(nearest - pose.position) <= WALL_REACH * WALL_REACH {
-                    self.ring.sense_edge(pose, edge, free);
-                }
-            }
+    fn think_and_drive(&mut self) -> Result<(), StepError> {
+        let around = Surroundings {
+            lab: &self.config.lab,
+            frame: self.tick,
+            positions: &self.positions,
+            targets: &self.targets,
+            samples: &self.samples,
+            sight_m: PERCEPTION_RANGE * self.config.scale,
+            grid: &self.grid,
+            walls: self.world.walls(),
+            wall_index: &self.wall_index,
+            tracker: &self.tracker,
+            ring: &self.ring,
+            ether: &self.ether,
+        };
+        let one = |(robot, (unit, pose)): (usize, (&mut Unit<B>, &mut Pose))| {
+            unit.frame(pose, &around).map_err(|source| StepError { robot, tick: around.frame, source })
+        };
+        if self.units.len() < CROWD {
+            return self.units.iter_mut().zip(&mut self.poses).enumerate().try_for_each(one);
         }
-    }
-
-    /// One robot's percept and its brain's answer.
-    fn think(&mut self, robot: usize) -> Result<(), StepError> {
-        if self.stop_ticks[robot].is_some_and(|stop| self.tick >= stop) {
-            self.wheels[robot] = [0, 0];
-            return Ok(());
-        }
-        let (pose, noise, stream) = (&self.poses[robot], &self.config.noise, &mut self.noise[robot]);
-        let fix = Some(localise(pose, noise, stream));
-        let proximity = ProximityRing::quantised(&self.free[robot], noise.proximity_m, stream);
-        let range = PERCEPTION_RANGE * self.config.scale;
-        let look = |sense: &mut FarSense| sense.look(pose.position, range, &self.targets, &self.samples, noise, stream);
-        let Seen { targets, obstacles } = self.far_senses.get_mut(robot).map(look).unwrap_or_default();
-        let heard = self.radio.deliver(robot, pose.position);
-        let percept = Percept { fix, elapsed_us: NOMINAL_TICK_US, proximity, targets, obstacles, heard };
-        let fault = |source| StepError { robot, tick: self.tick, source };
-        let command = self.brains[robot].tick(&percept).map_err(fault)?;
-        self.wheels[robot] = [command.left, command.right].map(|s| s.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
-        self.radio.send(robot, command.broadcast.as_ref());
-        Ok(())
+        let robots = self.units.par_iter_mut().zip(self.poses.par_iter_mut()).enumerate().with_min_len(CROWD_PART);
+        // Whoever fails first in time, the one with the lowest number is named.
+        robots.filter_map(|robot| one(robot).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
     }
 
     fn move_targets(&mut self) {
@@ -353,10 +332,10 @@ impl<B: Brain> Swarm<B> {
 
     fn record(&mut self, contacts: ContactCounts) {
         let um = |p: Point<f64>| [micrometres(p.x), micrometres(p.y)];
-        let robots = self.poses.iter().zip(&self.wheels).map(|(pose, &wheels)| RobotState {
+        let robots = self.poses.iter().zip(&self.units).map(|(pose, unit)| RobotState {
             position_um: um(pose.position),
             heading_q14: [unit_q14(pose.heading.x), unit_q14(pose.heading.y)],
-            wheels,
+            wheels: unit.wheels,
         });
         self.recorded.targets_um.clear();
         self.recorded.targets_um.extend(self.targets.iter().map(|&target| um(target)));

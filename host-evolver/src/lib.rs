@@ -13,6 +13,7 @@ pub mod figures;
 pub mod files;
 pub mod model;
 pub mod quoting;
+pub mod realities;
 pub mod record;
 pub mod results;
 pub mod run;

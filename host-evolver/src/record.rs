@@ -9,9 +9,6 @@ use firmware_sim::trace::{Recorder, Trace, TraceHeader};
 use grn_core::blob::Blob;
 use serde_json::{Value, json};
 
-/// What a run may leave, by name.
-pub const FILES: [&str; 4] = ["metrics.json", "trace.bin", "trace.csv", "trace.svg"];
-
 /// The most memory that the record of a run takes, bytes. To write it as text and as bytes takes four times as much more.
 const MOST_RECORD: usize = 100_000_000;
 
@@ -50,9 +47,10 @@ pub fn metrics(simulation: &Simulation, scenario: &Scenario) -> Value {
         "number": simulation.number,
         "scenario": scenario.name(),
         "seed": simulation.config.seed,
-        "robots": simulation.config.robots,
+        "robots": simulation.config.lab.robots.count,
+        "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "swarm": simulation.config,
+        "conditions": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

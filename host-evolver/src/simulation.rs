@@ -2,8 +2,9 @@
 
 use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
-use firmware_sim::config::{ConfigError, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::geometry::Walls;
+use firmware_sim::lab::Laboratory;
 use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
@@ -15,6 +16,7 @@ use grn_core::pattern::NoPattern;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_core::robot::{Controller, LoadError};
 use grn_core::scalar::{NumberType, Q8_24, Scalar};
+use grn_input::InputError;
 use serde::Serialize;
 use std::error::Error;
 use std::fmt;
@@ -30,20 +32,12 @@ pub const ENOUGH_UNKNOWN: f64 = 0.05;
 /// Most contacts between robots, for each robot: one may bump into another while the swarm forms, not again and again.
 pub const ENOUGH_PEER_CONTACTS: f64 = 1.0;
 
-/// Robots of a simulation when nothing else is said.
-pub const DEFAULT_ROBOTS: usize = 12;
 /// Speed of the fastest target when nothing else is said, metres per second in the world.
 pub const DEFAULT_SPEED: f64 = 0.03;
 
-/// The usual swarm for a blob of this scale: two mother robots, or one if there is only one robot.
-pub fn usual_config(scale: f32, robots: usize) -> SwarmConfig {
-    SwarmConfig {
-        robots,
-        mothers: robots.clamp(1, 2),
-        scale: f64::from(scale),
-        target_speed_m_per_s: DEFAULT_SPEED,
-        ..SwarmConfig::default()
-    }
+/// The usual run in a laboratory for a blob of this scale.
+pub fn usual_config(scale: f32, lab: Laboratory) -> SwarmConfig {
+    SwarmConfig { scale: f64::from(scale), target_speed_m_per_s: DEFAULT_SPEED, lab, ..SwarmConfig::default() }
 }
 
 /// Why there was no simulation.
@@ -54,7 +48,7 @@ pub enum SimulationError {
     /// The blob's pattern vanishes in double precision.
     NoPattern(NoPattern),
     /// The swarm cannot be set up.
-    Config(ConfigError),
+    Config(InputError),
     /// A robot's brain failed.
     Brain(StepError),
 }
@@ -131,7 +125,7 @@ impl Simulation {
 
     /// The most contacts between robots that a working swarm of this size has.
     pub fn allowed_peer_contacts(&self) -> u64 {
-        (ENOUGH_PEER_CONTACTS * self.config.robots as f64) as u64
+        (ENOUGH_PEER_CONTACTS * self.config.lab.robots.count as f64) as u64
     }
 
     /// Whether the controller works.
@@ -241,8 +235,8 @@ const MOST_HOURS: f64 = 1000.0;
 /// Whether a run ends in reasonable time: a slow target makes a long run.
 ///
 /// # Errors
-/// [`ConfigError`] that says which speed is possible.
-pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), ConfigError> {
+/// [`InputError`] that says which speed is possible.
+pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
     let most_seconds = MOST_HOURS * 3600.0;
     let path = scenario.longest_path() * config.scale;
     if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
@@ -250,13 +244,10 @@ pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), Con
     }
     // Rounded up, so that the speed that is named is possible.
     let least = (path / (most_seconds - config.settle_s) * 1e9).ceil() / 1e9;
-    Err(ConfigError {
-        field: "target_speed_m_per_s",
-        value: format!("{:?}", config.target_speed_m_per_s),
-        expected: format!(
-            "the run would take longer than {MOST_HOURS:.0} simulated hours; at least {least} metres per second are needed"
-        ),
-    })
+    let way_out = format!(
+        "the run would take longer than {MOST_HOURS:.0} simulated hours; at least {least} metres per second are needed"
+    );
+    Err(InputError::new("target_speed_m_per_s", format!("{:?}", config.target_speed_m_per_s), way_out))
 }
 
 /// Measures how far a position in the world is from the pattern of the exact model.

@@ -4,6 +4,7 @@ Lengths are metres, angles radians, times seconds, unless a name says otherwise.
 """
 
 from ._evolution import Evolution, evolve
+from ._laboratory import laboratory
 from ._native import (
     Blob,
     Command,
@@ -16,7 +17,7 @@ from ._native import (
     TargetReport,
 )
 from ._native import VERSION as __version__
-from ._simulation import Simulation, measure, simulate
+from ._simulation import Robustness, Simulation, measure, simulate
 from ._tables import read_front, read_trace
 
 __all__ = [
@@ -28,11 +29,13 @@ __all__ = [
     "Message",
     "Progress",
     "Robot",
+    "Robustness",
     "Scenario",
     "Simulation",
     "TargetReport",
     "__version__",
     "evolve",
+    "laboratory",
     "measure",
     "read_front",
     "read_trace",

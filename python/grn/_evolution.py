@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
-from typing import Callable, Optional, Sequence, Union
+from typing import Callable, Mapping, Optional, Sequence, Union
 
 from . import _native
+from ._laboratory import assignments
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Evolution:
         out: the folder, which `read_front` opens.
         knee: the controller that is deployed.
         feasible: whether every model of the front is feasible; if not, nothing was simulated.
-        works: whether the knee works on twelve simulated robots.
+        works: whether the knee works on the laboratory's simulated robots.
         notices: what the user should hear, such as pictures that could not be drawn.
     """
 
@@ -38,6 +39,8 @@ def evolve(
     objectives: Sequence[str] = ("nodes", "f2"),
     motifs: str = "all",
     scale: float = 0.25,
+    lab: Union[str, PathLike[str]] = "ideal",
+    set: Mapping[str, object] = {},
     threads: Optional[int] = None,
     resume: bool = False,
     progress: Optional[Callable[[_native.Progress], object]] = None,
@@ -54,6 +57,7 @@ def evolve(
         objectives: what to minimise, two or three names.
         motifs: what to build with, "all" or "binary".
         scale: world metres per scenario metre of the blobs.
+        lab: the laboratory that the knee is simulated in, a name or a file; set replaces some of its values.
         threads: how many; all cores if it is not given. The result does not depend on it.
         resume: continue the run in the folder.
         progress: called after every generation.
@@ -68,6 +72,8 @@ def evolve(
         objectives=list(objectives),
         motifs=motifs,
         scale=scale,
+        lab=fspath(lab),
+        set=assignments(set),
         threads=threads or 0,
         resume=resume,
         progress=progress,

@@ -149,17 +149,10 @@ class Run:
     def arrays(self) -> dict[str, Any]: ...
     def save_trace(self, path: _Path) -> None: ...
 
+def laboratory_json(lab: str, set: Sequence[str]) -> str: ...
 def trace_arrays(path: _Path) -> dict[str, Any]: ...
-def simulate(
-    blob: Union[Blob, _Path],
-    scenario: Union[Scenario, _Path],
-    *,
-    robots: int,
-    seed: int,
-    scale: Optional[float],
-    speed: float,
-    dtype: str,
-) -> Run: ...
+def simulate(order: object) -> Run: ...
+def realities_json(order: object, count: int) -> str: ...
 def measure(
     blob: Union[Blob, _Path],
     scenario: Union[Scenario, _Path],
@@ -181,6 +174,8 @@ def evolve(
     objectives: Sequence[str],
     motifs: str,
     scale: float,
+    lab: str,
+    set: Sequence[str],
     threads: int,
     resume: bool,
     progress: Optional[Callable[[Progress], object]],

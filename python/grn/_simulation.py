@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
-from os import PathLike
-from typing import Any, Mapping, Optional, Union
+from dataclasses import dataclass
+from os import PathLike, fspath
+from typing import Any, Mapping, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
 from ._arrays import Arrays
+from ._laboratory import assignments
 
 BlobLike = Union[_native.Blob, str, "PathLike[str]"]
 ScenarioLike = Union[_native.Scenario, str, "PathLike[str]"]
@@ -60,35 +62,97 @@ class Simulation:
         return f"<Simulation of {robots} robots, {self.metrics['duration_s']} s: {works}>"
 
 
+@dataclass(frozen=True)
+class Robustness:
+    """What came out in many laboratories around one.
+
+    Attributes:
+        realities: for each its number, whether it works, and its measures.
+        works: in how many it works.
+        interval: the 95 % interval of the share in which it works.
+    """
+
+    realities: list[dict[str, Any]]
+    works: int
+    interval: tuple[float, float]
+
+
+@dataclass
+class _Order:
+    """What the compiled part is told; the names are those that it reads."""
+
+    blob: BlobLike
+    scenario: ScenarioLike
+    robots: Optional[int]
+    seed: int
+    scale: Optional[float]
+    speed: float
+    dtype: str
+    lab: str
+    set: list[str]
+
+
+@overload
 def simulate(
     blob: BlobLike,
     scenario: ScenarioLike,
     *,
-    robots: int = 12,
+    robots: Optional[int] = ...,
+    seed: int = ...,
+    scale: Optional[float] = ...,
+    speed: float = ...,
+    dtype: str = ...,
+    lab: Union[str, PathLike[str]] = ...,
+    set: Mapping[str, object] = ...,
+    realities: None = ...,
+) -> Simulation: ...
+@overload
+def simulate(
+    blob: BlobLike,
+    scenario: ScenarioLike,
+    *,
+    robots: Optional[int] = ...,
+    seed: int = ...,
+    scale: Optional[float] = ...,
+    speed: float = ...,
+    dtype: str = ...,
+    lab: Union[str, PathLike[str]] = ...,
+    set: Mapping[str, object] = ...,
+    realities: int,
+) -> Robustness: ...
+def simulate(
+    blob: BlobLike,
+    scenario: ScenarioLike,
+    *,
+    robots: Optional[int] = None,
     seed: int = 1,
     scale: Optional[float] = None,
     speed: float = 0.03,
     dtype: str = "f32",
-    lab: Optional[Union[str, PathLike[str]]] = None,
+    lab: Union[str, PathLike[str]] = "ideal",
     set: Mapping[str, object] = {},
     realities: Optional[int] = None,
-) -> Simulation:
+) -> Union[Simulation, Robustness]:
     """Runs a blob on every robot of a simulated swarm until all targets have arrived, as `grn simulate` does.
 
     Args:
         blob: the controller, or the path of its file.
         scenario: the world, or the path of its file.
-        robots: how many; two of them, or the only one, are mother robots.
+        robots: how many, two of them, or the only one, mother robots; as in the laboratory if it is not given.
         seed: of everything random; equal seeds give equal runs on every machine.
         scale: world metres per scenario metre; the blob's if it is not given.
         speed: of the target with the longest path, metres per second in the world.
         dtype: what the robots compute in, "f32" or "q8.24".
+        lab: the conditions: the name of a laboratory that is shipped, or the path of a file.
+        set: values of the laboratory to replace, such as `{"radio.loss": 0.3}`.
+        realities: runs in so many laboratories drawn around the given one instead, on all cores; the result is a `Robustness`.
     """
-    if lab is not None or set or realities is not None:
-        raise NotImplementedError("lab, set, realities: this version's simulator has one laboratory only")
-    return Simulation(
-        _native.simulate(blob, scenario, robots=robots, seed=seed, scale=scale, speed=speed, dtype=dtype)
-    )
+    order = _Order(blob, scenario, robots, seed, scale, speed, dtype, fspath(lab), assignments(set))
+    if realities is None:
+        return Simulation(_native.simulate(order))
+    found = json.loads(_native.realities_json(order, realities))
+    low, high = found["interval"]
+    return Robustness(found["realities"], found["works"], (low, high))
 
 
 def measure(

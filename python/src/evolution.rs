@@ -1,8 +1,11 @@
 //! Evolution runs, with the folder that `grn evolve` leaves.
 
+use crate::attention::attended;
 use crate::blob::Blob;
 use crate::errors::{about, failed, refused};
+use crate::laboratory::found;
 use crate::scenario::GivenScenario;
+use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario;
 use firmware_sim::swarm;
 use grn_core::scalar::NumberType;
@@ -11,16 +14,12 @@ use host_evolver::evolve::{Advance, Milestone, Objectives, Search, Settings};
 use host_evolver::model::variation::MotifSet;
 use host_evolver::record;
 use host_evolver::run::{Manifest, RunFolder};
-use host_evolver::simulation::{self, DEFAULT_ROBOTS, check_length, usual_config};
+use host_evolver::simulation::{self, check_length, usual_config};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
-use std::time::Duration;
-
-/// How long Python waits for news before it looks whether Ctrl-C was pressed.
-const GLANCE: Duration = Duration::from_millis(100);
+use std::sync::mpsc::Sender;
 
 /// How far an evolution has come after a generation.
 #[pyclass(frozen, get_all, module = "grn")]
@@ -56,7 +55,7 @@ pub struct Found {
     knee: Py<Blob>,
     /// Whether every model of the front is feasible.
     feasible: bool,
-    /// Whether the knee works on twelve simulated robots.
+    /// Whether the knee works on the laboratory's simulated robots.
     works: bool,
     /// What the user should hear.
     notices: Vec<String>,
@@ -67,6 +66,7 @@ struct Order {
     scenario: scenario::Scenario,
     settings: Settings,
     scale: f32,
+    lab: Laboratory,
     out: PathBuf,
     resume: bool,
 }
@@ -95,7 +95,7 @@ impl<E: std::error::Error + 'static> From<E> for Ended {
 
 /// Evolves controllers for a scenario into a folder, and simulates the knee.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, out, evaluations, seed, objectives, motifs, scale, threads, resume, progress))]
+#[pyo3(signature = (scenario, *, out, evaluations, seed, objectives, motifs, scale, lab, set, threads, resume, progress))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of its own in Python")]
 pub fn evolve(
     py: Python<'_>,
@@ -106,6 +106,8 @@ pub fn evolve(
     objectives: Vec<String>,
     motifs: &str,
     scale: f32,
+    lab: String,
+    set: Vec<String>,
     threads: usize,
     resume: bool,
     progress: Option<Py<PyAny>>,
@@ -118,57 +120,28 @@ pub fn evolve(
         other => return Err(refused(format_args!("motifs = {other:?}: all or binary is needed"))),
     };
     let settings = Settings { seed, evaluations, motifs, objectives, ..Settings::default() };
-    let order = Order { scenario, settings, scale, out, resume };
+    let order = Order { scenario, settings, scale, lab: found(&lab, &set)?, out, resume };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(about("threads"))?;
-    let (news, heard) = mpsc::channel();
-    let (ended, raised) = py.detach(move || {
-        let stop = AtomicBool::new(false);
-        std::thread::scope(|scope| {
-            let (order, stop) = (&order, &stop);
-            let search = scope.spawn(move || pool.install(|| order.carry_out(stop, &news)));
-            let mut raised = None;
-            loop {
-                let told = match heard.recv_timeout(GLANCE) {
-                    Ok(told) => Some(told),
-                    Err(RecvTimeoutError::Timeout) => None,
-                    // The search has ended: nobody is left to tell anything.
-                    Err(RecvTimeoutError::Disconnected) => return (search.join(), raised),
-                };
-                if raised.is_none() {
-                    raised = Python::attach(|py| tell(py, progress.as_ref(), told)).err();
-                    stop.store(raised.is_some(), Ordering::Relaxed);
-                }
-            }
-        })
-    });
-    match (ended, raised) {
-        (_, Some(error)) | (Ok(Err(Ended::Failed(error))), None) => Err(error),
-        (Ok(Ok(Brought { knee, feasible, works, notices })), None) => {
+    let tell =
+        |py: Python<'_>, told: Progress| progress.as_ref().map_or(Ok(()), |call| call.call1(py, (told,)).map(drop));
+    let ended = attended(py, tell, |stop, news| pool.install(|| order.carry_out(stop, news)))?;
+    match ended {
+        Ok(Brought { knee, feasible, works, notices }) => {
             Ok(Found { knee: Py::new(py, Blob { inner: knee })?, feasible, works, notices })
         }
-        (Ok(Err(Ended::Stopped)) | Err(_), None) => {
-            Err(refused("the search ended unexpectedly; this is a defect of grn"))
-        }
-    }
-}
-
-/// Tells the callback, and looks whether Ctrl-C was pressed.
-fn tell(py: Python<'_>, progress: Option<&Py<PyAny>>, told: Option<Progress>) -> PyResult<()> {
-    py.check_signals()?;
-    match (progress, told) {
-        (Some(progress), Some(told)) => progress.call1(py, (told,)).map(drop),
-        _ => Ok(()),
+        Err(Ended::Failed(error)) => Err(error),
+        Err(Ended::Stopped) => Err(refused("interrupted")),
     }
 }
 
 impl Order {
     /// Does what `grn evolve` does: checks everything, takes the folder, searches, writes, simulates the knee.
     fn carry_out(&self, stop: &AtomicBool, news: &Sender<Progress>) -> Result<Brought, Ended> {
-        let Order { scenario, settings, scale, out, resume } = self;
-        let config = usual_config(*scale, DEFAULT_ROBOTS);
+        let Order { scenario, settings, scale, lab, out, resume } = self;
+        let config = usual_config(*scale, lab.clone());
         swarm::check(scenario, &config)?;
         check_length(scenario, &config)?;
-        let manifest = Manifest::new(scenario, settings.clone(), *scale);
+        let manifest = Manifest::new(scenario, settings.clone(), *scale, lab.clone());
         let world = World::new(scenario.clone());
         Search::new(&world, settings.clone(), None)?;
         let (mut run, state) = if *resume {

@@ -1,9 +1,11 @@
 //! The compiled part of the Python package grn: the libraries as Python sees them. What a user imports is `grn/__init__.py`, which adds
 //! NumPy and pandas; the types are in `grn/_native.pyi`.
 
+mod attention;
 mod blob;
 mod errors;
 mod evolution;
+mod laboratory;
 mod message;
 mod recorded;
 mod robot;
@@ -23,6 +25,8 @@ mod _native {
     #[pymodule_export]
     use crate::evolution::{Found, Progress, evolve};
     #[pymodule_export]
+    use crate::laboratory::laboratory_json;
+    #[pymodule_export]
     use crate::message::{Message, TargetReport};
     #[pymodule_export]
     use crate::recorded::{Run, trace_arrays};
@@ -31,7 +35,7 @@ mod _native {
     #[pymodule_export]
     use crate::scenario::Scenario;
     #[pymodule_export]
-    use crate::simulation::{measure, simulate};
+    use crate::simulation::{measure, realities_json, simulate};
     #[pymodule_export]
     const VERSION: &str = host_evolver::files::VERSION;
 }

@@ -1,56 +1,90 @@
 //! Swarms in the simulator, and swarms that drove elsewhere measured with its ruler.
 
+use crate::attention::attended;
 use crate::blob::GivenBlob;
 use crate::errors::{about, failed, refused};
+use crate::laboratory::found;
 use crate::recorded::{Run, replay};
 use crate::robot::number_type;
 use crate::scenario::GivenScenario;
 use firmware_sim::config::SwarmConfig;
+use firmware_sim::lab::Laboratory;
+use firmware_sim::scenario::Scenario;
 use firmware_sim::trace::{Recorder, TraceHeader};
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use host_evolver::files;
+use host_evolver::realities;
 use host_evolver::record;
 use host_evolver::simulation::{self, Marks, PatternRuler, Simulation, check_length, meter, usual_config};
 use pyo3::prelude::*;
+use serde_json::json;
 use std::ops::ControlFlow;
+use std::sync::atomic::Ordering::Relaxed;
 
-/// Runs a blob on every robot of a swarm until all targets have arrived.
-#[pyfunction]
-#[expect(clippy::too_many_arguments, reason = "each is a keyword of its own in Python")]
-#[pyo3(signature = (blob, scenario, *, robots, seed, scale, speed, dtype))]
-pub fn simulate(
-    py: Python<'_>,
-    blob: GivenBlob<'_>,
-    scenario: GivenScenario<'_>,
-    robots: usize,
+/// What a run is made from, as Python gives it.
+#[derive(FromPyObject)]
+pub struct Order<'py> {
+    blob: GivenBlob<'py>,
+    scenario: GivenScenario<'py>,
+    robots: Option<usize>,
     seed: u64,
     scale: Option<f32>,
     speed: f64,
-    dtype: &str,
-) -> PyResult<Run> {
-    let (blob, scenario) = (scaled(blob.get()?, scale)?, scenario.get()?);
-    let config = SwarmConfig { seed, target_speed_m_per_s: speed, ..usual_config(blob.scale, robots) };
-    check_length(&scenario, &config).map_err(|error| failed(&error))?;
-    let number = number_type(dtype)?;
-    let mut recorder = record::recorder(&scenario, &config);
-    let mut raised = None;
-    let found = py.detach(|| {
-        simulation::simulate(&blob, &scenario, config, number, &mut recorder, |_| {
-            match Python::attach(|py| py.check_signals()) {
-                Ok(()) => ControlFlow::Continue(()),
-                Err(error) => {
-                    raised = Some(error);
-                    ControlFlow::Break(())
-                }
-            }
-        })
-    });
-    match (found.map_err(|error| failed(&error))?, raised) {
-        (Some(simulation), None) => Ok(Run { simulation, trace: recorder.into_trace(), scenario }),
-        (_, Some(error)) => Err(error),
-        (None, None) => Err(refused("interrupted")),
+    dtype: String,
+    lab: String,
+    set: Vec<String>,
+}
+
+impl Order<'_> {
+    /// Loads and checks everything.
+    fn get(self) -> PyResult<(Blob, Scenario, SwarmConfig, NumberType)> {
+        let (blob, scenario) = (scaled(self.blob.get()?, self.scale)?, self.scenario.get()?);
+        let usual = usual_config(blob.scale, found(&self.lab, &self.set)?);
+        let mut config = SwarmConfig { seed: self.seed, target_speed_m_per_s: self.speed, ..usual };
+        if let Some(count) = self.robots {
+            config = config.with_robots(count);
+        }
+        check_length(&scenario, &config).map_err(|error| failed(&error))?;
+        Ok((blob, scenario, config, number_type(&self.dtype)?))
     }
+}
+
+/// Runs a blob on every robot of a swarm until all targets have arrived.
+#[pyfunction]
+pub fn simulate(py: Python<'_>, order: Order<'_>) -> PyResult<Run> {
+    let (blob, scenario, config, number) = order.get()?;
+    let mut recorder = record::recorder(&scenario, &config);
+    let simulated = attended(
+        py,
+        |_, ()| Ok(()),
+        |stop, _| {
+            let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+            simulation::simulate(&blob, &scenario, config, number, &mut recorder, watch)
+        },
+    )?;
+    let simulation = simulated.map_err(|error| failed(&error))?.ok_or_else(|| refused("interrupted"))?;
+    Ok(Run { simulation, trace: recorder.into_trace(), scenario })
+}
+
+/// The same in laboratories number 1 to `count` drawn around the given one; what came out, as JSON.
+#[pyfunction]
+pub fn realities_json(py: Python<'_>, order: Order<'_>, count: u64) -> PyResult<String> {
+    let (blob, scenario, config, number) = order.get()?;
+    if count == 0 {
+        return Err(refused("realities = 0: at least 1 is needed"));
+    }
+    let found = attended(
+        py,
+        |_, ()| Ok(()),
+        |stop, _| realities::try_all(&blob, &scenario, &config, number, 1..=count, stop, &|| ()),
+    )?;
+    let robustness = found.map_err(|error| failed(&error))?.ok_or_else(|| refused("interrupted"))?;
+    Ok(files::json(&json!({
+        "works": robustness.works(),
+        "interval": robustness.interval(),
+        "realities": robustness.realities,
+    })))
 }
 
 /// The blob for a world of this scale, or of its own.
@@ -77,7 +111,7 @@ pub fn measure(
     ticks_per_second: u16,
 ) -> PyResult<Run> {
     let (blob, scenario) = (scaled(blob.get()?, scale)?, scenario.get()?);
-    let config = usual_config(blob.scale, robots.into());
+    let config = usual_config(blob.scale, Laboratory::default()).with_robots(robots.into());
     let header = TraceHeader { ticks_per_second, robots, targets, ..TraceHeader::of(&scenario, &config) };
     let world = scenario.clone();
     let ruler = PatternRuler::new(&blob, &world).map_err(|error| failed(&error))?;

@@ -40,6 +40,34 @@ def test_what_drove_here_measures_the_same_elsewhere(model, channel):
     assert not still.works and still.metrics["formed_at_s"] is None
 
 
+def test_a_laboratory_s_numbers_are_those_of_the_command_line(grn_command):
+    numbers = grn.laboratory("ideal", set={"radio.loss": 0.25, "timing.in_phase": False})
+    assert numbers["radio"]["loss"] == 0.25 and numbers["timing"]["in_phase"] is False
+    assert numbers["localisation"]["rate_hz"] == 32.0 and numbers["robots"] == {"count": 12, "mothers": 2}
+    with pytest.raises(grn.GrnError, match="did you mean radio.loss"):
+        grn.laboratory("ideal", set={"radio.lost": 0.25})
+    with pytest.raises(grn.GrnError, match="no laboratory of this name"):
+        grn.laboratory("idea")
+
+
+def test_a_run_in_a_laboratory_is_that_of_the_command_line(model, channel, grn_command):
+    command = [grn_command, "simulate", str(model), str(channel), "--lab", "hostile", "--set", "radio.loss=0.4", "--json"]
+    told = json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
+    run = grn.simulate(model, channel, lab="hostile", set={"radio.loss": 0.4})
+    assert run.summary["metrics"] == told["metrics"] and run.summary["laboratory"] == "hostile"
+    assert run.metrics != grn.simulate(model, channel).metrics
+
+
+def test_realities_are_those_of_the_command_line(model, channel, grn_command, tmp_path):
+    command = [grn_command, "simulate", str(model), str(channel), "--speed", "0.1", "--realities", "5", "--json"]
+    told = json.loads(subprocess.run(command, capture_output=True, text=True).stdout)
+    found = grn.simulate(model, channel, speed=0.1, realities=5)
+    assert [one["number"] for one in found.realities] == [1, 2, 3, 4, 5]
+    assert found.works == sum(one["works"] for one in found.realities)
+    assert found.interval[0] <= found.works / 5 <= found.interval[1]
+    assert found.realities == told["realities"]
+
+
 def test_impossible_runs_are_refused(model, channel):
     with pytest.raises(grn.GrnError, match="robots"):
         grn.simulate(model, channel, robots=0)

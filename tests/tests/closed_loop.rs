@@ -27,7 +27,7 @@ fn network(model: &str) -> Network<f32> {
 
 /// The world of the bar: a quarter of the scenario's scale, 12 robots, targets at 30 mm/s.
 fn bar(seed: u64) -> SwarmConfig {
-    SwarmConfig { robots: 12, seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() }
+    SwarmConfig { seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() }
 }
 
 /// One run for each configuration, two at a time.
@@ -63,7 +63,7 @@ fn a_moving_target_is_encircled() {
 
 #[test]
 fn a_crowd_stands_in_one_row() {
-    let crowd = |seed| SwarmConfig { robots: 20, ..bar(seed) };
+    let crowd = |seed| bar(seed).with_robots(20);
     for run in runs("nand-xnor", NumberType::F32, &scenario("channel"), &[1, 2].map(crowd)) {
         let p95 = run.metrics.radial_error_p95_m.unwrap() / run.ring_radius_m;
         assert!(p95 < 0.1, "20 robots are off the pattern by {p95:.3} of its radius");
@@ -124,10 +124,10 @@ fn twenty_seeds_of_every_model() {
         both("channel", &channel, model, &bar);
     }
     for model in ["nand-xnor", "andn-nand-xnor"] {
-        both("channel, 8 robots", &channel, model, &|seed| SwarmConfig { robots: 8, ..bar(seed) });
-        both("channel, 20 robots", &channel, model, &|seed| SwarmConfig { robots: 20, ..bar(seed) });
+        both("channel, 8 robots", &channel, model, &|seed| bar(seed).with_robots(8));
+        both("channel, 20 robots", &channel, model, &|seed| bar(seed).with_robots(20));
         both("channel, 50 mm/s", &channel, model, &|seed| SwarmConfig { target_speed_m_per_s: 0.05, ..bar(seed) });
-        let small = |seed| SwarmConfig { robots: 8, scale: 0.1, ..bar(seed) };
+        let small = |seed| SwarmConfig { scale: 0.1, ..bar(seed) }.with_robots(8);
         both("channel, scale 0.1, 8 robots", &channel, model, &small);
     }
     for model in ["nand-xnor", "andn-xnor", "andn-nand-xnor", "eh-grn-2"] {

@@ -82,7 +82,7 @@ fn a_robot_behind_the_link_does_what_a_robot_in_the_process_does() -> Outcome {
     let scenario = Scenario::load(format!("{}/../scenarios/channel.toml", env!("CARGO_MANIFEST_DIR")))?;
     let model = Shipped::named("andn-nand-xnor");
     let blob = Blob::<32>::decode(&model.bytes)?;
-    let config = || SwarmConfig { scale: 0.25, robots: 6, ..SwarmConfig::default() };
+    let config = || SwarmConfig { scale: 0.25, ..SwarmConfig::default() }.with_robots(6);
     let mut native = Swarm::new(&scenario, config(), |robot| Controller::<f32>::new(&blob, robot as u16).unwrap())?;
     let mut remote = Swarm::new(&scenario, config(), |robot| -> Box<dyn Brain> {
         let client = client(server(empty_flash(robot as u64)));

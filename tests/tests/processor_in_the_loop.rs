@@ -31,7 +31,7 @@ fn emulated_robots_leave_the_same_trace<S: Scalar>(name: &str, seconds: u64) -> 
     let scenario = Scenario::load(format!("{}/../scenarios/channel.toml", env!("CARGO_MANIFEST_DIR")))?;
     let model = Shipped::named("andn-nand-xnor");
     let blob = Blob::<DEFAULT_GENES>::decode(&model.bytes)?;
-    let config = || SwarmConfig { scale: 0.25, robots: 12, mothers: 2, ..SwarmConfig::default() };
+    let config = || SwarmConfig { scale: 0.25, ..SwarmConfig::default() };
     let controller = |robot: usize| Controller::<S>::new(&blob, robot as u16).unwrap();
     let mut native = Swarm::new(&scenario, config(), controller)?;
     let sockets = tempfile::tempdir()?;

@@ -3,7 +3,7 @@
 
 use firmware_sim::body::Pose;
 use firmware_sim::brain::{Brain, BrainError};
-use firmware_sim::radio::RadioConfig;
+use firmware_sim::lab::{self, Laboratory};
 use firmware_sim::trace::TraceHeader;
 use firmware_sim::{Recorder, Scenario, Stop, Swarm, SwarmConfig, Trace};
 use grn_core::blob::Blob;
@@ -44,7 +44,7 @@ fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
 fn simulation(model: &str, world: &str, config: SwarmConfig) -> (Simulation, Trace) {
     let scenario = Scenario::load(repository(&format!("scenarios/{world}.toml"))).unwrap();
     let blob = Blob::<DEFAULT_GENES>::decode(&Shipped::named(model).bytes).unwrap();
-    let config = SwarmConfig { robots: 12, target_speed_m_per_s: 0.03, ..config };
+    let config = SwarmConfig { target_speed_m_per_s: 0.03, ..config };
     let mut recorder = recorder(&scenario, &config);
     let run = simulate(&blob, &scenario, config, NumberType::F32, &mut recorder, |_| ControlFlow::Continue(()));
     (run.unwrap().unwrap(), recorder.into_trace())
@@ -54,7 +54,7 @@ fn simulation(model: &str, world: &str, config: SwarmConfig) -> (Simulation, Tra
 fn trace_bytes<S: Scalar>(loopback: bool) -> Vec<u8> {
     let scenario = Scenario::load(repository("scenarios/channel.toml")).unwrap();
     let blob = Blob::<DEFAULT_GENES>::decode(&Shipped::named("nand-xnor").bytes).unwrap();
-    let config = SwarmConfig { robots: 12, ..SwarmConfig::default() };
+    let config = SwarmConfig::default();
     let brain =
         |robot: usize| OnRadio { controller: Controller::<S>::new(&blob, robot as u16).unwrap(), loopback, sent: None };
     let mut recorder = recorder(&scenario, &config);
@@ -85,8 +85,8 @@ fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
 
 #[test]
 fn a_swarm_that_runs_into_itself_again_and_again_does_not_work() {
-    let radio = RadioConfig { loss: 0.95, ..RadioConfig::default() };
-    let (deaf, _) = simulation("nand-xnor", "channel", SwarmConfig { radio, ..SwarmConfig::default() });
+    let lab = lab::set(Laboratory::default(), "radio.loss=0.95").unwrap();
+    let (deaf, _) = simulation("nand-xnor", "channel", SwarmConfig { lab, ..SwarmConfig::default() });
     let verdict = deaf.verdict();
     assert!(deaf.metrics.peer_contacts > 12 && !verdict.clear_of_peers && !verdict.works(), "{:?}", deaf.metrics);
     assert!(verdict.encircled && verdict.accurate, "nothing else is wrong: {:?}", deaf.metrics);
@@ -113,13 +113,8 @@ fn channel() -> Scenario {
 fn nobody_is_lost_when(stops: impl Fn(usize) -> Vec<Stop>) {
     for (model, number) in MODELS.iter().flat_map(|model| NumberType::ALL.map(|number| (model, number))) {
         for seed in 1..=8 {
-            let config = SwarmConfig {
-                robots: 12,
-                seed,
-                target_speed_m_per_s: 0.03,
-                stops: stops(seed as usize),
-                ..SwarmConfig::default()
-            };
+            let config =
+                SwarmConfig { seed, target_speed_m_per_s: 0.03, stops: stops(seed as usize), ..SwarmConfig::default() };
             let run = simulate(&blob(model), &channel(), config, number, &mut (), |_| ControlFlow::Continue(()));
             let metrics = run.unwrap().unwrap().metrics;
             let away = (metrics.lost_robots, metrics.strayed_robots, metrics.wall_contacts);
@@ -163,7 +158,7 @@ fn left_behind_a_box<S: Scalar>(model: &str, seed: u64) -> usize {
     let text = std::fs::read_to_string(repository("scenarios/channel.toml")).unwrap();
     let scenario = Scenario::parse(&(text.split("[[wall]]").next().unwrap().to_owned() + BOX)).unwrap();
     let blob = blob(model);
-    let config = SwarmConfig { robots: 12, seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() };
+    let config = SwarmConfig { seed, target_speed_m_per_s: 0.03, ..SwarmConfig::default() };
     let brain = |robot: usize| WallBlind(Controller::<S>::new(&blob, robot as u16).unwrap());
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
     swarm.run(swarm.arrival_tick(), &mut (), |_| ControlFlow::Continue(())).unwrap();

@@ -20,6 +20,8 @@ pub enum Found {
     Scenario,
     /// A comparison of methods.
     Campaign,
+    /// The conditions of a simulation.
+    Laboratory,
     /// JSON.
     Json,
     /// SVG or another kind of XML.
@@ -50,6 +52,9 @@ impl Found {
             () if begins("<") => Found::Picture,
             () if has("[[method]]") || has("[[scenario]]") => Found::Campaign,
             () if has("[morphogen]") || has("[[target]]") || has("[ring]") => Found::Scenario,
+            () if ["[localisation]", "[radio]", "[wheels]", "[timing]", "[proximity]"].into_iter().any(has) => {
+                Found::Laboratory
+            }
             () => Found::Text,
         }
     }
@@ -59,6 +64,7 @@ impl Found {
         let example = match wanted {
             Found::Scenario => "; give a scenario such as scenarios/channel.toml",
             Found::Campaign => "; give a campaign such as campaigns/paper.toml",
+            Found::Laboratory => "; give a laboratory: `grn lab ideal` prints one",
             Found::Blob => "; give a controller, a .grn file",
             _ => "",
         };
@@ -67,7 +73,7 @@ impl Found {
             (Found::Scenario, Found::Campaign) => {
                 "; a campaign is a file that names scenarios, such as campaigns/paper.toml"
             }
-            (Found::Utf16 | Found::Binary, Found::Scenario | Found::Campaign) => {
+            (Found::Utf16 | Found::Binary, Found::Scenario | Found::Campaign | Found::Laboratory) => {
                 "; save it as UTF-8 text if it is a text"
             }
             _ => example,
@@ -83,6 +89,7 @@ impl fmt::Display for Found {
             Found::Blob => "a blob (a controller)",
             Found::Scenario => "a scenario (a world)",
             Found::Campaign => "a campaign",
+            Found::Laboratory => "a laboratory",
             Found::Json => "a JSON file",
             Found::Picture => "a picture or web page",
             Found::Utf16 => "a text in UTF-16",

@@ -1,7 +1,6 @@
 use super::*;
 use crate::geometry::length_squared;
-use crate::radio::RadioConfig;
-use crate::sensors::Noise;
+use crate::lab::{self, Laboratory, Wheels};
 use crate::trace::{Recorder, Trace, TraceHeader};
 use grn_core::blob::{Blob, FieldParameters, Gains};
 use grn_core::dynamics::Step;
@@ -9,13 +8,20 @@ use grn_core::field::Kernel;
 use grn_core::motif::Motif;
 use grn_core::network::{Gene, Network, Source};
 use grn_core::robot::epuck2::BODY_RADIUS;
-use grn_core::robot::{Command, Controller, Message, Millimetres};
+use grn_core::robot::{Command, Controller, Message, Millimetres, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
 const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");
 
 fn channel() -> Scenario {
     Scenario::parse(CHANNEL).unwrap()
+}
+
+/// So many robots whose wheels differ.
+fn uneven(robots: usize) -> SwarmConfig {
+    let mut config = SwarmConfig::default().with_robots(robots);
+    config.lab.wheels = Wheels { gain: 0.02, ..Wheels::default() };
+    config
 }
 
 /// Wanders, turns away from what it senses, and talks; remembers what it heard.
@@ -75,7 +81,7 @@ fn real_bytes<S: Scalar>() -> Vec<u8> {
         time_scale: 4.0,
         gains: Gains::default(),
     };
-    let config = SwarmConfig { robots: 12, variation: 0.02, ..SwarmConfig::default() };
+    let config = uneven(12);
     let controller = |robot| Real(Controller::<S>::new(&blob, robot as u16).unwrap());
     let mut swarm = Swarm::new(&channel(), config, controller).unwrap();
     recorded(&mut swarm, 320).encode()
@@ -105,7 +111,7 @@ impl Brain for Straight {
 
 #[test]
 fn equal_seeds_give_equal_bytes() {
-    let config = SwarmConfig { robots: 40, variation: 0.02, ..SwarmConfig::default() };
+    let config = uneven(40);
     let bytes = |seed| {
         let config = SwarmConfig { seed, ..config.clone() };
         recorded(&mut Swarm::new(&channel(), config, wanderer).unwrap(), 400).encode()
@@ -123,10 +129,11 @@ fn equal_seeds_give_equal_bytes() {
 
 #[test]
 fn a_broadcast_is_heard_in_the_next_tick() {
-    let config = SwarmConfig { robots: 5, radio: RadioConfig { range_m: 10.0, loss: 0.0 }, ..SwarmConfig::default() };
+    let config = SwarmConfig { lab: Laboratory::perfect(), ..SwarmConfig::default() }.with_robots(5);
+    let config = SwarmConfig { lab: lab::set(config.lab, "radio.range_m=10").unwrap(), ..config };
     let mut swarm = Swarm::new(&channel(), config, wanderer).unwrap();
     (0..10).for_each(|_| swarm.step().unwrap());
-    for (robot, brain) in swarm.brains().iter().enumerate() {
+    for (robot, brain) in swarm.brains().enumerate() {
         assert_eq!(brain.heard.len(), 9 * 4);
         assert!(
             brain
@@ -140,7 +147,7 @@ fn a_broadcast_is_heard_in_the_next_tick() {
 #[test]
 fn robots_start_free_and_near_the_target() {
     for (robots, scale) in [(20, 0.25), (250, 0.25), (100, 0.1), (30, 1.0)] {
-        let config = SwarmConfig { robots, scale, ..SwarmConfig::default() };
+        let config = SwarmConfig { scale, ..SwarmConfig::default() }.with_robots(robots);
         let swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
         let positions: Vec<_> = swarm.poses().iter().map(|pose| pose.position).collect();
         for (i, &p) in positions.iter().enumerate() {
@@ -151,10 +158,10 @@ fn robots_start_free_and_near_the_target() {
             assert!(robots > 30 || p.x <= swarm.targets()[0].x, "the target goes east, robots start west of it");
         }
     }
-    let full = SwarmConfig { robots: 250, scale: 0.03, ..SwarmConfig::default() };
-    assert_eq!(Swarm::new(&channel(), full, |_| Straight).unwrap_err().field, "robots");
+    let full = SwarmConfig { scale: 0.03, ..SwarmConfig::default() }.with_robots(250);
+    assert_eq!(Swarm::new(&channel(), full, |_| Straight).unwrap_err().key(), "robots");
     let large = SwarmConfig { scale: 2.0, ..SwarmConfig::default() };
-    assert_eq!(Swarm::new(&channel(), large, |_| Straight).unwrap_err().field, "scale");
+    assert_eq!(Swarm::new(&channel(), large, |_| Straight).unwrap_err().key(), "scale");
 }
 
 #[test]
@@ -172,7 +179,7 @@ fn bodies_never_enter_walls_or_stay_inside_each_other() {
         .replace("d_min = 1.0", "d_min = 0.1")
         .replace("d_max = 2.0", "d_max = 0.25");
     let scenario = Scenario::parse(&format!("{text}[[target]]\npath = [[0.55, 0.55]]\n{pen}")).unwrap();
-    let config = SwarmConfig { robots: 20, scale: 1.0, ..SwarmConfig::default() };
+    let config = SwarmConfig { scale: 1.0, ..SwarmConfig::default() }.with_robots(20);
     let mut swarm = Swarm::new(&scenario, config, |_| Straight).unwrap();
     let mut closest: f64 = 1.0;
     let (mut wall_events, mut peer_events) = (0, 0);
@@ -220,14 +227,14 @@ fn only_mothers_see_far() {
             Ok(Command::default())
         }
     }
-    let config = SwarmConfig { robots: 6, mothers: 2, noise: Noise::NONE, ..SwarmConfig::default() };
+    let config = SwarmConfig { lab: Laboratory::perfect(), ..SwarmConfig::default() }.with_robots(6);
     let mut swarm = Swarm::new(&channel(), config, |_| Watcher(0, 0)).unwrap();
     (0..4).for_each(|_| swarm.step().unwrap());
-    let seen: Vec<_> = swarm.brains().iter().map(|w| w.0).collect();
+    let seen: Vec<_> = swarm.brains().map(|w| w.0).collect();
     assert_eq!(seen, [1, 1, 0, 0, 0, 0]);
     // The nearest corner is 5 m from the target: whether a mother sees walls depends on where it stands.
     let range = 5.0 * 0.25;
-    for (robot, (watcher, pose)) in swarm.brains().iter().zip(swarm.poses()).enumerate() {
+    for (robot, (watcher, pose)) in swarm.brains().zip(swarm.poses()).enumerate() {
         let corners = [3.5, 1.5].map(|y| (pose.position - Point::new(1.5, y)).length());
         assert_eq!(watcher.1 > 0, robot < 2 && corners.iter().any(|&d| d <= range), "{robot}");
     }

@@ -44,8 +44,8 @@ impl TraceHeader {
             target_speed_m_per_s: config.target_speed_m_per_s,
             ticks_per_second: TICKS_PER_SECOND,
             ticks_per_frame: 1,
-            robots: config.robots as u16,
-            mothers: config.mothers as u16,
+            robots: config.lab.robots.count as u16,
+            mothers: config.lab.robots.mothers as u16,
             targets: scenario.paths().len() as u16,
         }
     }

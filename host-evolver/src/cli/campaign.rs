@@ -1,6 +1,6 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, no_threads, options, output, progress, this_command};
+use super::{Answer, Failure, interrupt, options, output, progress, this_command};
 use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
 use grn_input::file_name;
 use indicatif::ProgressBar;
@@ -41,10 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.map_or(0, NonZeroUsize::get))
-        .build()
-        .map_err(no_threads)?;
+    let pool = options::pool(arguments.threads)?;
     let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
     progress.bar.finish_and_clear();
     let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);

@@ -1,7 +1,8 @@
 //! `grn evolve`.
 
+use super::conditions::Conditions;
 use super::simulate::{check_swarm, table, watched};
-use super::{Answer, Failure, about, interrupt, no_threads, options, output, progress, this_command};
+use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
 use crate::files::FileError;
@@ -10,7 +11,7 @@ use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
 use crate::record;
 use crate::run::{Manifest, Results, RunFolder};
-use crate::simulation::{DEFAULT_ROBOTS, usual_config};
+use crate::simulation::usual_config;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
@@ -44,6 +45,8 @@ pub struct Arguments {
     /// World metres per scenario metre of the blobs.
     #[arg(long, default_value_t = DEFAULT_SCALE, value_parser = options::scale, allow_hyphen_values = true)]
     scale: f32,
+    #[command(flatten)]
+    conditions: Conditions,
     /// Folder of the run, new or empty if it is not to be resumed [default: runs/SCENARIO-seed-N, or the next free name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -70,9 +73,9 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         objectives: arguments.objectives.clone(),
         ..Settings::default()
     };
-    let config = usual_config(arguments.scale, DEFAULT_ROBOTS);
+    let config = usual_config(arguments.scale, arguments.conditions.laboratory()?);
     check_swarm(&arguments.scenario, &scenario, &config)?;
-    let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale);
+    let manifest = Manifest::new(&scenario, settings.clone(), arguments.scale, config.lab.clone());
     let stop = interrupt::watch()?;
     // Settings are checked before anything is written.
     let world = World::new(scenario.clone());
@@ -98,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         output::report(infeasible(&world, &front));
         return Ok(Answer::No);
     }
-    let robots = config.robots;
+    let (robots, lab) = (config.lab.robots.count, config.lab.name.clone());
     let mut recorder = record::recorder(&scenario, &config);
     let knee_path = run.path("knee.grn");
     let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop);
@@ -108,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     not_drawn.iter().for_each(output::notice);
     contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
     run.finish(&contents)?;
-    output::report(format!("the knee on {robots} simulated robots (simulation/trace.svg):"));
+    output::report(format!("the knee on {robots} simulated robots in the laboratory {lab} (simulation/trace.svg):"));
     output::report(table(&simulation));
     Ok(if simulation.verdict().works() { Answer::Yes } else { Answer::No })
 }
@@ -182,10 +185,7 @@ fn search_on(
     stop: &AtomicBool,
     folder: &Path,
 ) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.map_or(0, NonZeroUsize::get))
-        .build()
-        .map_err(no_threads)?;
+    let pool = options::pool(threads)?;
     let found = progress::Found::default();
     found.add(search.state().evaluations as u64);
     let bar = ProgressBar::new(search.settings().evaluations as u64)

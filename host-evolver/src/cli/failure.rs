@@ -7,7 +7,6 @@ use crate::emulation::{EmulationError, StartError};
 use crate::evolve::SettingsError;
 use crate::files::{FileError, is_fault_of_system};
 use crate::simulation::SimulationError;
-use firmware_sim::config::ConfigError;
 #[cfg(unix)]
 use firmware_sim::link::qemu::EmulatorError;
 use grn_core::blob::BlobError;
@@ -161,7 +160,6 @@ macro_rules! always {
 
 always! {
     BlobError => Input,
-    ConfigError => Input,
     SettingsError => Input,
     SlotError => Input,
     // What is drawn comes from models and worlds that were checked.
@@ -240,7 +238,7 @@ mod tests {
     #[test]
     fn what_nobody_gave_is_not_called_bad_input() {
         let input = |error: io::Error| InputError::new("", "", "cannot be read").from_source(error);
-        let config = ConfigError { field: "radio.loss", value: "2".into(), expected: "0 to 1".into() };
+        let config = || InputError::new("radio.loss", 2, "0 to 1");
         let failures: Vec<(Failure, Exit)> = vec![
             (missing().into(), Exit::BadInput),
             (broken().into(), Exit::Fault),
@@ -252,8 +250,8 @@ mod tests {
             (FileError::internal("x", "has no bytes").into(), Exit::Fault),
             (FigureError::Chart("no".into()).into(), Exit::Fault),
             (PngError::Size(0, 0).into(), Exit::Fault),
-            (Failure::from(config.clone()), Exit::BadInput),
-            (Failure::from(config).of_program(), Exit::Fault),
+            (Failure::from(config()), Exit::BadInput),
+            (Failure::from(config()).of_program(), Exit::Fault),
             (brain("no robot perceives this").into(), Exit::Fault),
             (brain(LinkError::Silent { tries: 8 }).into(), Exit::Fault),
             (ConnectionError::Open(OpenError::Refused(missing())).into(), Exit::BadInput),

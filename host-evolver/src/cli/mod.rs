@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand.
 
 mod campaign;
+mod conditions;
 mod connection;
 mod draw;
 mod eval;
@@ -9,10 +10,12 @@ mod exit;
 mod failure;
 mod flash;
 mod interrupt;
+mod lab;
 mod options;
 mod output;
 mod progress;
 mod robots;
+mod robustness;
 mod scatter;
 mod show;
 mod simulate;
@@ -44,6 +47,8 @@ enum Command {
     Campaign(campaign::Arguments),
     /// Run a blob on every robot of a simulated swarm.
     Simulate(simulate::Arguments),
+    /// Print a laboratory, the conditions of a simulation, with comments.
+    Lab(lab::Arguments),
     /// Throw round obstacles at random around the targets' paths of a scenario.
     Scatter(scatter::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
@@ -131,6 +136,7 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Evolve(arguments) => evolve::run(arguments),
         Command::Campaign(arguments) => campaign::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Lab(arguments) => lab::run(arguments),
         Command::Scatter(arguments) => scatter::run(arguments),
         Command::Flash(arguments) => flash::run(arguments),
         Command::Robots(arguments) => robots::run(arguments),

@@ -1,6 +1,8 @@
 //! Ranges of numeric options.
 
+use super::{Failure, no_threads};
 use grn_input::Range;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fmt::Debug;
 use std::num::NonZeroUsize;
 use std::str::FromStr;
@@ -22,6 +24,11 @@ pub fn threads(text: &str) -> Result<NonZeroUsize, String> {
     count.filter(|count| count.get() <= most).ok_or_else(|| {
         format!("must be a number from 1 to {most} ({MOST_THREADS_PER_CORE} for each of this machine's {cores} cores)")
     })
+}
+
+/// So many threads, or as many as the machine has cores.
+pub fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, Failure> {
+    ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).build().map_err(no_threads)
 }
 
 /// Parses a seed.

@@ -1,15 +1,18 @@
 //! `grn simulate`.
 
+use super::conditions::Conditions;
+use super::robustness;
 use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation, EmulationError};
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
+use crate::realities;
 use crate::record;
 use crate::simulation::{
-    self, DEFAULT_ROBOTS, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation,
-    SimulationError, usual_config,
+    self, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError, usual_config,
 };
-use firmware_sim::config::{MAX_ROBOTS, SwarmConfig};
+use firmware_sim::config::SwarmConfig;
+use firmware_sim::lab::MAX_ROBOTS;
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
 use firmware_sim::trace::Observer;
@@ -18,6 +21,7 @@ use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
 use std::io::ErrorKind;
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -46,9 +50,20 @@ pub struct Arguments {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
-    /// How many robots.
-    #[arg(long, default_value_t = DEFAULT_ROBOTS, value_parser = robots, allow_hyphen_values = true)]
-    robots: usize,
+    /// How many robots, two of them mothers [default: the laboratory's].
+    #[arg(long, value_parser = robots, allow_hyphen_values = true)]
+    robots: Option<usize>,
+    #[command(flatten)]
+    conditions: Conditions,
+    /// Simulate in so many laboratories drawn around this one, and say in how many of them it works.
+    #[arg(long, value_name = "N", value_parser = robustness::count, allow_hyphen_values = true, conflicts_with_all = ["reality", "target"])]
+    realities: Option<u64>,
+    /// Simulate in one of these laboratories, by its number; 0 is the laboratory itself.
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, value_parser = robustness::number, allow_hyphen_values = true)]
+    reality: u64,
+    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
+    threads: Option<NonZeroUsize>,
     /// World metres per scenario metre [default: the blob's].
     #[arg(long, value_parser = options::scale, allow_hyphen_values = true)]
     scale: Option<f32>,
@@ -67,8 +82,8 @@ pub struct Arguments {
     /// Image for --target qemu [default: what `cargo xtask target` builds for the number type].
     #[arg(long, value_name = "ELF")]
     image: Option<PathBuf>,
-    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg. A trace has every tick, or of a run that is too long for
-    /// the memory every second, fourth, ….
+    /// Folder for trace.csv, trace.bin, metrics.json and trace.svg; with --realities for realities.csv and realities.json. A
+    /// trace has every tick, or of a run that is too long for the memory every second, fourth, ….
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Print JSON instead of a table.
@@ -82,36 +97,51 @@ enum Target {
     Qemu,
 }
 
+/// What may be in the folder of `--out`.
+const FILES: [&str; 6] = ["metrics.json", "realities.csv", "realities.json", "trace.bin", "trace.csv", "trace.svg"];
+
 /// Where `cargo xtask target` leaves images.
 const IMAGES: &str = "firmware/target/thumbv7em-none-eabihf/release";
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    check_emulation(arguments)?;
     let mut blob = read_blob(&arguments.blob)?;
     if let Some(scale) = arguments.scale {
         blob.scale = scale;
         files::blob_bytes(&blob).map_err(about("--scale"))?;
     }
     let scenario = Scenario::load(&arguments.scenario)?;
-    let config = SwarmConfig {
-        robots: arguments.robots,
-        seed: arguments.seed,
-        target_speed_m_per_s: arguments.speed,
-        ..usual_config(blob.scale, arguments.robots)
+    let lab = arguments.conditions.laboratory()?;
+    let config =
+        SwarmConfig { seed: arguments.seed, target_speed_m_per_s: arguments.speed, ..usual_config(blob.scale, lab) };
+    let config = match arguments.robots {
+        Some(count) => config.with_robots(count),
+        None => config,
     };
+    check_emulation(arguments, config.lab.robots.count)?;
     check_swarm(&arguments.scenario, &scenario, &config)?;
     let stop = interrupt::watch()?;
     let lock = arguments.out.as_deref().map(take).transpose()?;
+    let pool = options::pool(arguments.threads)?;
+    if let Some(count) = arguments.realities {
+        let experiment =
+            robustness::Experiment { blob: &blob, scenario: &scenario, config: &config, number: arguments.number };
+        let robustness = pool.install(|| experiment.run(&arguments.blob, count, &stop))?;
+        if let Some(lock) = &lock {
+            keep(lock.folder(), &experiment.files(&robustness)?)?;
+        }
+        return experiment.tell(&robustness, arguments.json);
+    }
+    let config = realities::reality(&config, arguments.reality);
     let simulation = match &lock {
         Some(lock) => {
             let mut recorder = record::recorder(&scenario, &config);
-            let simulation = simulated(arguments, &blob, &scenario, config, &mut recorder, &stop)?;
+            let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &mut recorder, &stop))?;
             let (contents, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &blob);
             not_drawn.iter().for_each(output::notice);
             keep(lock.folder(), &contents)?;
             simulation
         }
-        None => simulated(arguments, &blob, &scenario, config, &mut (), &stop)?,
+        None => pool.install(|| simulated(arguments, &blob, &scenario, config, &mut (), &stop))?,
     };
     if arguments.json {
         output::product_json(&record::metrics(&simulation, &scenario))?;
@@ -122,15 +152,15 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 }
 
 /// Refuses options of emulators without emulators, which would not do what they say, and more emulators than robots.
-fn check_emulation(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { target, robots, emulated, image, .. } = arguments;
+fn check_emulation(arguments: &Arguments, robots: usize) -> Result<(), Failure> {
+    let Arguments { target, emulated, image, .. } = arguments;
     let without = |option: String| {
         Err(Failure::Input(format!("{option} is for robots in emulators; add --target qemu, or leave it out")))
     };
     match (target, image, emulated) {
         (Target::Native, Some(image), _) => without(format!("--image {}", image.display())),
         (Target::Native, None, Some(emulated)) => without(format!("--emulated {emulated}")),
-        (Target::Qemu, _, Some(emulated)) if emulated > robots => {
+        (Target::Qemu, _, &Some(emulated)) if emulated > robots => {
             Err(Failure::Input(format!("--emulated {emulated}: must be at most the number of robots, {robots}")))
         }
         _ => Ok(()),
@@ -156,7 +186,7 @@ fn simulated(
                     NumberType::Q8_24 => "robot-q8_24",
                 })
             });
-            let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.robots));
+            let robots = arguments.emulated.unwrap_or(DEFAULT_EMULATED.min(config.lab.robots.count));
             let emulation = Emulation { image, robots };
             with_progress(stop, |watch| {
                 let simulated = emulation::simulate(blob, scenario, config, number, &emulation, observer, watch);
@@ -178,17 +208,16 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
     let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
-    fits.map_err(|error| match error.field {
-        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value, error.expected)),
+    fits.map_err(|error| match error.key() {
+        "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value(), error.expected())),
         "scale" | "robots" => {
             let [east, north] = scenario.region();
-            let fault = format!("--{} {}: {}", error.field, error.value, error.expected);
+            let fault = format!("--{} {}: {}", error.key(), error.value(), error.expected());
             let error = InputError::new("region", format!("[{east:?}, {north:?}]"), fault);
             let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
             grn_input::locate(&text, error).in_file(path).into()
         }
-        // What nobody can set.
-        _ => Failure::from(error).of_program(),
+        _ => error.into(),
     })
 }
 
@@ -232,14 +261,14 @@ fn with_progress(
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
     let lock = take_folder(folder)?;
-    record::FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
+    FILES.iter().try_for_each(|name| files::probe(&folder.join(name)))?;
     Ok(lock)
 }
 
 /// Writes the files of a run, and removes those of an earlier one that this one has not.
 fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
     files::write_together(contents.iter().map(|(name, content)| (folder.join(name), content.as_slice())))?;
-    for stale in record::FILES.iter().filter(|name| !contents.contains_key(**name)).map(|name| folder.join(name)) {
+    for stale in FILES.iter().filter(|name| !contents.contains_key(**name)).map(|name| folder.join(name)) {
         match std::fs::remove_file(&stale) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 return Err(FileError::from_system(stale, "removed", error));

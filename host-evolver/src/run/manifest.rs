@@ -2,6 +2,7 @@
 
 use crate::evolve::Settings;
 use crate::files::{self, FileError, Ledger, Owner};
+use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::FORMAT_VERSION;
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,8 @@ pub struct Manifest {
     pub settings: Settings,
     /// World metres per model metre of the blobs.
     pub scale: f32,
+    /// The laboratory in which the knee is simulated, whole.
+    pub laboratory: Laboratory,
     /// Whether all files are there.
     pub finished: bool,
     /// The files with the SHA-256 of each; of a run that is not finished, those that it may have written.
@@ -33,7 +36,7 @@ pub struct Manifest {
 
 impl Manifest {
     /// The manifest of a run by this software, at its beginning.
-    pub fn new(scenario: &Scenario, settings: Settings, scale: f32) -> Self {
+    pub fn new(scenario: &Scenario, settings: Settings, scale: f32, laboratory: Laboratory) -> Self {
         Manifest {
             grn: files::VERSION.into(),
             blob_format: FORMAT_VERSION,
@@ -41,6 +44,7 @@ impl Manifest {
             scenario_sha256: files::sha256(scenario.to_toml()),
             settings,
             scale,
+            laboratory,
             finished: false,
             files: Ledger::default(),
         }

@@ -1,0 +1,185 @@
+//! One robot in the world: body, senses, clock and brain.
+
+use crate::body::{BodyParameters, Drive, Pose};
+use crate::brain::{Brain, BrainError};
+use crate::config::SwarmConfig;
+use crate::geometry::{Walls, length_squared};
+use crate::grid::{Grid, WallIndex};
+use crate::lab::Laboratory;
+use crate::localisation::{PoseError, Track, Tracker};
+use crate::proximity::{ALL_FREE, Gains, ProximityRing, ROBOT_REACH, WALL_REACH};
+use crate::radio::{Ether, Letter, Obstruction, Receiver};
+use crate::random::{Component, Stream};
+use crate::sensors::{Eye, FarSense, Seen};
+use crate::timing::{Clock, FRAME_US};
+use grn_core::geometry::Point;
+use grn_core::robot::Percept;
+use grn_core::robot::epuck2::{BODY_RADIUS, MAX_WHEEL_SPEED, PROXIMITY_SENSORS};
+
+/// What all robots perceive: the world as the last frame left it. Nothing in it changes while they think, so they may do so in any
+/// order, or at once.
+pub(super) struct Surroundings<'a> {
+    pub lab: &'a Laboratory,
+    pub frame: u64,
+    pub positions: &'a [Point<f64>],
+    pub targets: &'a [Point<f64>],
+    pub samples: &'a [Point<f64>],
+    pub sight_m: f64,
+    pub grid: &'a Grid,
+    pub walls: &'a Walls,
+    pub wall_index: &'a WallIndex,
+    pub tracker: &'a Tracker,
+    pub ring: &'a ProximityRing,
+    pub ether: &'a Ether,
+}
+
+/// A robot.
+pub(super) struct Unit<B> {
+    number: usize,
+    pub brain: B,
+    pub wheels: [i16; 2],
+    /// What it broadcasts in this frame.
+    pub letter: Option<Letter>,
+    /// Robots so near that bodies can meet in this frame.
+    pub near: Vec<u16>,
+    /// The first frame without it, if it breaks down.
+    stops_at: Option<u64>,
+    drive: Drive,
+    clock: Clock,
+    track: Track,
+    receiver: Receiver,
+    far_sense: Option<FarSense>,
+    gains: Gains,
+    noise: Stream,
+    slip: Stream,
+}
+
+impl<B: Brain> Unit<B> {
+    /// Robot number `number` of this swarm, at its start.
+    pub fn new(
+        number: usize,
+        brain: B,
+        config: &SwarmConfig,
+        tracker: &Tracker,
+        ether: &Ether,
+        samples: usize,
+    ) -> Self {
+        let SwarmConfig { seed, ref lab, .. } = *config;
+        Unit {
+            number,
+            brain,
+            wheels: [0; 2],
+            letter: None,
+            near: Vec::with_capacity(16),
+            stops_at: config.stops.iter().filter(|stop| stop.robot == number).map(|stop| stop.tick).min(),
+            drive: Drive::new(&BodyParameters::drawn(&lab.wheels, seed, number)),
+            clock: Clock::new(&lab.timing, seed, number),
+            track: tracker.track(seed, number),
+            receiver: ether.receiver(number),
+            far_sense: (number < lab.robots.mothers).then(|| FarSense::new(samples)),
+            gains: Gains::drawn(lab.proximity.gain, seed, number),
+            noise: Stream::new(seed, Component::Sensors, number),
+            slip: Stream::new(seed, Component::Wheels, number),
+        }
+    }
+
+    /// One frame from `pose` on: thinks whenever its clock says so, and drives on in between.
+    ///
+    /// # Errors
+    /// The brain's.
+    pub fn frame(&mut self, pose: &mut Pose, around: &Surroundings<'_>) -> Result<(), BrainError> {
+        let begin = around.frame * FRAME_US;
+        let end = begin + FRAME_US;
+        self.letter = None;
+        self.find_near(pose, around);
+        if self.stops_at.is_some_and(|stop| around.frame >= stop) {
+            self.wheels = [0; 2];
+            return Ok(());
+        }
+        around.tracker.measure(&mut self.track, begin, pose);
+        let slip = self.slip_of_this_frame(around);
+        let mut now = begin;
+        while self.clock.next_us() < end {
+            let next = self.clock.next_us();
+            self.drive_on(pose, next - now, slip);
+            now = next;
+            self.think(pose, around, now)?;
+        }
+        self.drive_on(pose, end - now, slip);
+        Ok(())
+    }
+
+    fn find_near(&mut self, pose: &Pose, around: &Surroundings<'_>) {
+        self.near.clear();
+        let own = self.number as u16;
+        around.grid.within(pose.position, ROBOT_REACH * ROBOT_REACH, |other, _| {
+            if other != own {
+                self.near.push(other);
+            }
+        });
+    }
+
+    fn slip_of_this_frame(&mut self, around: &Surroundings<'_>) -> [f64; 2] {
+        let noise = around.lab.wheels.noise;
+        if noise > 0.0 { [(); 2].map(|()| 1.0 + noise * self.slip.normal()) } else { [1.0; 2] }
+    }
+
+    fn drive_on(&self, pose: &mut Pose, time_us: u64, slip: [f64; 2]) {
+        if time_us == 0 {
+            return;
+        }
+        let share = time_us as f64 / FRAME_US as f64;
+        let [left, right] = self.drive.rolled(self.wheels);
+        *pose = self.drive.advanced(*pose, [left * share * slip[0], right * share * slip[1]]);
+    }
+
+    fn think(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Result<(), BrainError> {
+        let percept = self.percept(pose, around, now_us);
+        let command = self.brain.tick(&percept)?;
+        self.wheels = [command.left, command.right].map(|speed| speed.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
+        if let Some(message) = &command.broadcast {
+            self.letter = Some(Letter::of(message, now_us));
+        }
+        Ok(())
+    }
+
+    fn percept(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Percept {
+        let Seen { targets, obstacles } = self.far(pose.position, around);
+        let obstruction = Obstruction { walls: around.walls, positions: around.positions };
+        Percept {
+            elapsed_us: self.clock.tick(),
+            fix: around.tracker.newest(&mut self.track, now_us),
+            proximity: self.proximity(pose, around),
+            targets,
+            obstacles,
+            heard: around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction),
+        }
+    }
+
+    fn far(&mut self, position: Point<f64>, around: &Surroundings<'_>) -> Seen {
+        let Some(far_sense) = &mut self.far_sense else { return Seen::default() };
+        let sighting = &around.lab.sighting;
+        let error = if sighting.own_pose_error { self.track.error() } else { PoseError::NONE };
+        let eye = Eye { position, range: around.sight_m, error, noise_m: sighting.noise_m };
+        far_sense.look(&eye, around.targets, around.samples, &mut self.noise)
+    }
+
+    fn proximity(&mut self, pose: &Pose, around: &Surroundings<'_>) -> [u16; PROXIMITY_SENSORS] {
+        let mut free = ALL_FREE;
+        for &other in &self.near {
+            around.ring.sense_body(pose, around.positions[usize::from(other)], BODY_RADIUS, &mut free);
+        }
+        for edge in around.wall_index.near(pose.position) {
+            if length_squared(edge.nearest(pose.position) - pose.position) <= WALL_REACH * WALL_REACH {
+                around.ring.sense_edge(pose, edge, &mut free);
+            }
+        }
+        let target_radius = around.lab.bodies.target_radius_m;
+        if target_radius > 0.0 {
+            for &target in around.targets {
+                around.ring.sense_body(pose, target, target_radius, &mut free);
+            }
+        }
+        around.ring.readings(&free, &self.gains, &mut self.noise)
+    }
+}

@@ -1,0 +1,30 @@
+//! The options that choose a laboratory.
+
+use super::Failure;
+use firmware_sim::lab::{self, Laboratory};
+use grn_input::InputError;
+
+#[derive(clap::Args)]
+pub struct Conditions {
+    /// The laboratory: one of those that `grn lab` lists, or a file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "ideal")]
+    lab: String,
+    /// Replace one value of the laboratory, such as radio.loss=0.3; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+impl Conditions {
+    /// The laboratory that was asked for.
+    pub fn laboratory(&self) -> Result<Laboratory, Failure> {
+        let found = lab::find(&self.lab)?;
+        let set = |laboratory, assignment: &String| {
+            lab::set(laboratory, assignment).map_err(|error| in_set(assignment, error))
+        };
+        self.set.iter().try_fold(found, set)
+    }
+}
+
+fn in_set(assignment: &str, error: InputError) -> Failure {
+    if error.key() == "--set" { error.into() } else { Failure::from(error).about(format_args!("--set {assignment}")) }
+}

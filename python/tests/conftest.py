@@ -1,4 +1,5 @@
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -28,3 +29,11 @@ def grn_command() -> str:
     command = os.environ.get("GRN_COMMAND", str(ROOT / "target" / "debug" / "grn"))
     assert Path(command).exists(), f"{command} is missing: cargo build --package host-evolver, or set GRN_COMMAND"
     return command
+
+
+@pytest.fixture
+def desk(root: Path, tmp_path: Path) -> Path:
+    """A folder in which the repository's paths lead to its files."""
+    for name in ("models", "scenarios", "examples"):
+        shutil.copytree(root / name, tmp_path / name)
+    return tmp_path

@@ -1,25 +1,13 @@
 """What is written about the package is true: its examples run as written, its types hold."""
 
-import json
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 
 def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-
-
-@pytest.fixture
-def desk(root: Path, tmp_path: Path) -> Path:
-    """A folder in which the repository's paths lead to its files."""
-    for name in ("models", "scenarios", "examples"):
-        shutil.copytree(root / name, tmp_path / name)
-    return tmp_path
 
 
 def test_the_examples_of_the_readme_run_as_written(root, desk):

@@ -34,7 +34,7 @@ def read_front(path: Union[str, PathLike[str]]) -> pd.DataFrame:
         table /= "front.csv"
     if not table.is_file():
         raise _native.GrnError(f"{table}: is not there: give the folder of a finished run")
-    front = _pandas().read_csv(table, keep_default_na=False)
+    front: pd.DataFrame = _pandas().read_csv(table, keep_default_na=False)
     if not {"nodes", "f2", "violation", "knee", "expression", "blob"} <= set(front.columns):
         raise _native.GrnError(f"{table}: is no front: it has the columns {', '.join(front.columns)}")
     front["blob"] = [str(table.parent / blob) for blob in front["blob"]]
@@ -69,6 +69,6 @@ def read_trace(path: Union[str, PathLike[str]]) -> pd.DataFrame:
     wheels = arrays.wheels.astype(float)
     robots = lines("robot", arrays.positions, heading=arrays.headings, left=wheels[..., 0], right=wheels[..., 1])
     targets = lines("target", arrays.targets)
-    trace = pandas.concat([targets, robots]).sort_values(["tick", "kind", "index"], kind="stable", ignore_index=True)
+    trace: pd.DataFrame = pandas.concat([targets, robots]).sort_values(["tick", "kind", "index"], kind="stable", ignore_index=True)
     trace.attrs.update(header)
     return trace

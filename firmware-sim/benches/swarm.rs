@@ -19,16 +19,27 @@ use std::time::Duration;
 
 const ROBOTS: usize = 100;
 const TICKS: usize = 320;
+/// As many robots as a swarm may have, in a world of a hundred times the area: as dense as [`ROBOTS`] in the channel.
+const CROWD: usize = 10_000;
+const PLAIN: &str = r#"
+name = "plain"
+region = [30.0, 30.0]
+snapshots = 2
+morphogen = { kernel = "gaussian", target_width = 1.5, obstacle_width = 0.9, level = 0.5 }
+ring = { d_min = 2.5, d_max = 5.0, d_obstacle = 2.0, steepness = 10.0 }
+target = [{ path = [[15.0, 15.0], [15.1, 15.0]] }]
+"#;
 /// How many robots' percepts are replayed to the controller alone; one of them is a mother's.
 const REPLAYED: usize = 20;
 /// A robot speaks every so many ticks, as under the real controller.
 const BROADCAST_PERIOD: u32 = 8;
 
-/// Circles the target it last heard of, turns away from what is near, and broadcasts a full message in its turn.
+/// Circles the target it last heard of at this distance, turns away from what is near, and broadcasts a full message in its turn.
 struct Cheap {
     number: u16,
     tick: u32,
     target: TargetReport,
+    distance_mm: f64,
 }
 
 impl Brain for Cheap {
@@ -52,7 +63,7 @@ impl Brain for Cheap {
         let ahead = (cos * to.x + sin * to.y) / 16384.0;
         let aside = (cos * to.y - sin * to.x) / 16384.0;
         let near = percept.proximity.iter().filter(|&&p| p < 200).count() as i16;
-        let wanted = to.x * to.x + to.y * to.y - 400.0 * 400.0;
+        let wanted = to.x * to.x + to.y * to.y - self.distance_mm * self.distance_mm;
         let turn = if wanted * aside + ahead > 0.0 { 150 } else { -150 } + 50 * near;
         let turned = (self.tick + u32::from(self.number)).is_multiple_of(BROADCAST_PERIOD);
         let broadcast = turned.then(|| {
@@ -122,8 +133,8 @@ fn blob(scenario: &Scenario, scale: f64) -> Blob {
 }
 
 /// A swarm under way: past the start, when buffers have grown, news has spread and robots have met.
-fn swarm<B: Brain>(scenario: &Scenario, scale: f64, brain: impl FnMut(usize) -> B) -> Swarm<B> {
-    let config = SwarmConfig { scale, settle_s: 0.0, ..SwarmConfig::default() }.with_robots(ROBOTS);
+fn swarm<B: Brain>(robots: usize, scenario: &Scenario, scale: f64, brain: impl FnMut(usize) -> B) -> Swarm<B> {
+    let config = SwarmConfig { scale, settle_s: 0.0, ..SwarmConfig::default() }.with_robots(robots);
     let mut swarm = expect(Swarm::new(scenario, config, brain));
     run(&mut swarm);
     swarm
@@ -138,7 +149,7 @@ fn run<B: Brain>(swarm: &mut Swarm<B>) {
 /// A swarm of real controllers under way, of which every `recorded`-th keeps a record.
 fn real<S: Scalar>(scenario: &Scenario, scale: f64, recorded: Option<usize>) -> Swarm<Real<S>> {
     let blob = blob(scenario, scale);
-    swarm(scenario, scale, |robot| {
+    swarm(ROBOTS, scenario, scale, |robot| {
         let controller: Controller<S> = expect(Controller::new(&blob, robot as u16));
         let recording = recorded.is_some_and(|every| robot.is_multiple_of(every));
         let record = recording.then(|| Record { start: controller.clone(), percepts: Vec::new() });
@@ -148,9 +159,19 @@ fn real<S: Scalar>(scenario: &Scenario, scale: f64, recorded: Option<usize>) -> 
 
 fn simulator(group: &mut BenchmarkGroup<'_, WallTime>, scenario: &Scenario, scale: f64) {
     let target = TargetReport { target: 0, position: Millimetres { x: 750, y: 2500 }, velocity: [0; 2], age: 0 };
-    let cheap = |robot| Cheap { number: robot as u16, tick: 0, target };
+    let cheap = |robot| Cheap { number: robot as u16, tick: 0, target, distance_mm: 400.0 };
     group.bench_function(format!("simulator/scale-{scale}"), |bencher| {
-        bencher.iter_batched_ref(|| swarm(scenario, scale, cheap), run, BatchSize::LargeInput);
+        bencher.iter_batched_ref(|| swarm(ROBOTS, scenario, scale, cheap), run, BatchSize::LargeInput);
+    });
+}
+
+fn crowd(group: &mut BenchmarkGroup<'_, WallTime>) {
+    let scenario = expect(Scenario::parse(PLAIN));
+    let target = TargetReport { target: 0, position: Millimetres { x: 15_000, y: 15_000 }, velocity: [0; 2], age: 0 };
+    let cheap = |robot| Cheap { number: robot as u16, tick: 0, target, distance_mm: 4000.0 };
+    group.sample_size(10).throughput(Throughput::Elements((CROWD * TICKS) as u64));
+    group.bench_function("simulator/crowd", |bencher| {
+        bencher.iter_batched_ref(|| swarm(CROWD, &scenario, 1.0, cheap), run, BatchSize::PerIteration);
     });
 }
 
@@ -196,6 +217,7 @@ fn bench(criterion: &mut Criterion) {
         controller::<f32>(&mut group, &scenario, scale);
         controller::<Q8_24>(&mut group, &scenario, scale);
     }
+    crowd(&mut group);
     group.finish();
 }
 

@@ -12,6 +12,9 @@ use std::collections::BTreeSet;
 pub const RELEASE_GAP: f64 = 0.001;
 /// How often overlaps are resolved per tick; a push may cause the next overlap.
 const PASSES: usize = 4;
+/// How far apart bodies and walls may be and still be looked at in every pass, metres: more than pushes amount to in a tick. A
+/// wall's index reaches as far.
+const PUSHES: f64 = 0.03;
 
 /// What touched in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -41,15 +44,20 @@ pub struct Contacts {
     /// Pairs in contact.
     touching: BTreeSet<(u16, u16)>,
     at_wall: Vec<bool>,
+    /// Pairs that can overlap in this tick.
+    close: Vec<(u16, u16)>,
+    /// Robots that can overlap a wall in this tick.
+    walled: Vec<u16>,
 }
 
 impl Contacts {
     /// No contacts among this many robots.
     pub fn new(robots: usize) -> Self {
-        Contacts { touching: BTreeSet::new(), at_wall: vec![false; robots] }
+        Contacts { touching: BTreeSet::new(), at_wall: vec![false; robots], close: Vec::new(), walled: Vec::new() }
     }
 
-    /// Pushes overlapping bodies apart and out of walls, and counts. `near` holds every pair that can overlap.
+    /// Pushes overlapping bodies apart and out of walls, and counts. `near` holds every pair that can overlap; of these and
+    /// of walls, those farther away than pushes reach are looked at once.
     pub fn resolve(
         &mut self,
         poses: &mut [Pose],
@@ -58,9 +66,18 @@ impl Contacts {
         index: &WallIndex,
     ) -> ContactCounts {
         let mut counts = ContactCounts::default();
+        let reach = 2.0 * BODY_RADIUS + PUSHES;
+        let distance_squared =
+            |&&(a, b): &&(u16, u16)| length_squared(poses[usize::from(b)].position - poses[usize::from(a)].position);
+        self.close.clear();
+        self.close.extend(near.iter().filter(|pair| distance_squared(pair) < reach * reach));
+        self.walled.clear();
+        self.walled.extend(
+            (0..).zip(&*poses).filter(|(_, pose)| !index.near(pose.position).is_empty()).map(|(robot, _)| robot),
+        );
         for _ in 0..PASSES {
             let mut moved = false;
-            for &(a, b) in near {
+            for &(a, b) in &self.close {
                 let (i, j) = (usize::from(a), usize::from(b));
                 let offset = poses[j].position - poses[i].position;
                 let squared = length_squared(offset);
@@ -75,11 +92,11 @@ impl Contacts {
                 poses[j].position = poses[j].position + push;
                 counts.peer_events += u32::from(self.touching.insert((a, b)));
             }
-            for (pose, at_wall) in poses.iter_mut().zip(&mut self.at_wall) {
-                if push_out(pose, walls, index) {
+            for robot in self.walled.iter().map(|&robot| usize::from(robot)) {
+                if push_out(&mut poses[robot], walls, index) {
                     moved = true;
-                    counts.wall_events += u32::from(!*at_wall);
-                    *at_wall = true;
+                    counts.wall_events += u32::from(!self.at_wall[robot]);
+                    self.at_wall[robot] = true;
                 }
             }
             if !moved {
@@ -94,7 +111,7 @@ impl Contacts {
 
     /// Forgets contacts whose gap has opened.
     fn release(&mut self, poses: &[Pose], index: &WallIndex) {
-        let Contacts { touching, at_wall } = self;
+        let Contacts { touching, at_wall, .. } = self;
         let limit = (2.0 * BODY_RADIUS + RELEASE_GAP) * (2.0 * BODY_RADIUS + RELEASE_GAP);
         touching.retain(|&(a, b)| {
             let offset = poses[usize::from(b)].position - poses[usize::from(a)].position;

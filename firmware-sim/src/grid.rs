@@ -3,13 +3,20 @@
 use crate::geometry::{Bounds, Edge, Walls, length_squared};
 use grn_core::geometry::{Point, Vector};
 
-/// The most cells a side; a swarm spread wider gets larger cells.
-const MAX_SIDE: usize = 64;
+/// The most cells a side of a small swarm's grid; a swarm spread wider gets larger cells.
+const SMALL_SIDE: usize = 64;
+
+/// The most cells a side for so many robots: four cells a robot, so that neither many robots share a cell nor many cells are
+/// cleared for each.
+fn most_side(robots: usize) -> usize {
+    SMALL_SIDE.max(2 * robots.isqrt())
+}
 
 /// Robots sorted by cell. Coordinates are kept beside the sorted order, each in an array of its own.
 #[derive(Debug)]
 pub struct Grid {
     reach: f64,
+    most_side: usize,
     low: Point<f64>,
     per_cell: f64,
     columns: usize,
@@ -25,13 +32,15 @@ pub struct Grid {
 impl Grid {
     /// A grid that finds what lies within `reach` metres.
     pub fn new(reach: f64, robots: usize) -> Self {
+        let most_side = most_side(robots);
         Grid {
             reach,
+            most_side,
             low: Vector::ZERO,
             per_cell: 0.0,
             columns: 1,
             rows: 1,
-            starts: Vec::with_capacity(MAX_SIDE * MAX_SIDE + 2),
+            starts: Vec::with_capacity(most_side * most_side + 2),
             cells: Vec::with_capacity(robots),
             robots: vec![0; robots],
             xs: vec![0.0; robots],
@@ -45,7 +54,7 @@ impl Grid {
         let Bounds { low, high } = bounds.unwrap_or(Bounds { low: Vector::ZERO, high: Vector::ZERO });
         let extent = high - low;
         // Slightly larger than the reach, so that rounding cannot put a neighbour two cells away.
-        let cell = (self.reach * 1.000_001).max(extent.x.max(extent.y) / (MAX_SIDE - 1) as f64);
+        let cell = (self.reach * 1.000_001).max(extent.x.max(extent.y) / (self.most_side - 1) as f64);
         self.low = low;
         self.per_cell = 1.0 / cell;
         self.columns = (extent.x * self.per_cell) as usize + 1;
@@ -174,9 +183,12 @@ mod tests {
     #[test]
     fn the_grid_finds_what_brute_force_finds() {
         let mut stream = Stream::new(3, Component::Placement, 0);
-        for (extent, reach) in [(1.0, 0.12), (1.0, 0.7), (100.0, 0.5), (0.0, 0.1)] {
-            let positions: Vec<Point<f64>> =
-                (0..120).map(|_| Vector::new(stream.symmetric() * extent, stream.symmetric() * extent / 3.0)).collect();
+        for (count, extent, reach) in
+            [(120, 1.0, 0.12), (120, 1.0, 0.7), (120, 100.0, 0.5), (120, 0.0, 0.1), (3000, 16.0, 0.12)]
+        {
+            let positions: Vec<Point<f64>> = (0..count)
+                .map(|_| Vector::new(stream.symmetric() * extent, stream.symmetric() * extent / 3.0))
+                .collect();
             let mut grid = Grid::new(reach, positions.len());
             for _ in 0..2 {
                 grid.rebuild((0..).zip(positions.iter().copied()));

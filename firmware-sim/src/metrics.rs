@@ -1,7 +1,8 @@
 //! What a run is worth: encirclement, distance from the pattern, contacts, clearance and spacing, measured while it goes on.
 //!
-//! Encirclement, contacts and clearance are measured in every tick. Distances from the pattern and spacing, which cost more
-//! than to simulate, are measured [`MEASUREMENTS_PER_SECOND`] times a second, at the same moments for every robot.
+//! Contacts and clearance are measured in every tick. Encirclement, spacing and distances from the pattern, which cost as much
+//! as to simulate, are measured [`MEASUREMENTS_PER_SECOND`] times a second, of every robot at the same moments. The moments
+//! below are these.
 
 mod bearings;
 mod clearance;
@@ -26,7 +27,7 @@ pub use whereabouts::{LEFT_AFTER_S, NEAR_TARGET, ON_PATTERN};
 pub const MAX_GAP_DEG: f64 = 90.0;
 /// The swarm has formed once every target stays encircled for this long, seconds.
 pub const FORMED_FOR_S: f64 = 2.0;
-/// How often distances from the pattern and spacing are measured, as far as whole ticks allow.
+/// How often encirclement, spacing and distances from the pattern are measured, as far as whole ticks allow.
 pub const MEASUREMENTS_PER_SECOND: u16 = 4;
 
 /// What metrics need to know besides the frames.
@@ -63,12 +64,12 @@ pub struct Metrics {
     pub encircled_share_of_run: f64,
     /// The largest angular gap about any target after forming, degrees.
     pub largest_gap_deg: Option<f64>,
-    /// Median distance of robots from the pattern over robots and measured moments after forming, metres; an unknown
+    /// Median distance of robots from the pattern over robots and moments after forming, metres; an unknown
     /// distance is longer than any other, and `None` if it is the median.
     pub radial_error_median_m: Option<f64>,
     /// Its 95th percentile, likewise.
     pub radial_error_p95_m: Option<f64>,
-    /// Share of robots and measured moments after forming for which the distance from the pattern is unknown.
+    /// Share of robots and moments after forming for which the distance from the pattern is unknown.
     pub radial_error_unknown_share: Option<f64>,
     /// Robots that are off the pattern (see [`ON_PATTERN`]) at the end of the run, for [`LEFT_AFTER_S`] already or since the
     /// start.
@@ -85,7 +86,7 @@ pub struct Metrics {
     pub peer_contact_s: f64,
     /// The least distance between a robot's centre and a wall over the whole run, metres; `None` without walls.
     pub min_wall_clearance_m: Option<f64>,
-    /// Evenness of spacing after forming, 0 to 1, averaged over targets and measured moments: the entropy of the angular gaps
+    /// Evenness of spacing after forming, 0 to 1, averaged over targets and moments: the entropy of the angular gaps
     /// between the robots nearest to a target, as a share of that of equal gaps. `None` too when no target has two.
     pub spacing_evenness: Option<f64>,
     /// What became of the swarm after each disturbance, robots that are broken down left out of account.
@@ -112,10 +113,10 @@ pub fn encircles(largest_gap: f64) -> bool {
 pub struct Meter<'a, D> {
     options: MetricsOptions<'a>,
     pattern_distance: D,
-    /// Ticks from one measurement of what costs much to the next.
+    /// Ticks from one moment to the next.
     stride: u64,
-    frames: u64,
-    encircled_frames: u64,
+    moments: u64,
+    encircled_moments: u64,
     forming: Forming,
     after: AfterForming,
     robots: Vec<Whereabouts>,
@@ -163,8 +164,8 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
             stride: u64::from(options.ticks_per_second / MEASUREMENTS_PER_SECOND).max(1),
             options,
             pattern_distance,
-            frames: 0,
-            encircled_frames: 0,
+            moments: 0,
+            encircled_moments: 0,
             forming: Forming::default(),
             after: AfterForming::default(),
             robots: Vec::new(),
@@ -186,7 +187,7 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
         ticks as f64 / f64::from(self.options.ticks_per_second)
     }
 
-    /// After how many measurements off the pattern a robot has left it.
+    /// After how many moments off the pattern a robot has left it.
     fn left_after(&self) -> usize {
         self.ticks(LEFT_AFTER_S).div_ceil(self.stride) as usize
     }
@@ -199,7 +200,8 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
             gaps.push(bearings.largest_gap());
         }
         let encircled = gaps.iter().all(|&gap| encircles(gap));
-        self.encircled_frames += u64::from(encircled);
+        self.moments += 1;
+        self.encircled_moments += u64::from(encircled);
         let needed = self.ticks(FORMED_FOR_S);
         self.forming.observe(tick, encircled, needed);
         if self.options.disturbances.get(self.recoveries.len()).is_some_and(|&disturbed| tick >= disturbed) {
@@ -254,8 +256,7 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
         };
         let formed_at = self.forming.formed_at();
         let after = formed_at.map(|_| &self.after);
-        let moments = formed_at.map_or(0, |formed| self.last_tick + 1 - formed);
-        let share = |count: u64| count as f64 / moments as f64;
+        let share = |count: u64| count as f64 / self.forming.moments() as f64;
         let recovery = |(tick, reforming): &(u64, Forming)| Recovery {
             disturbed_at_s: self.seconds(*tick),
             reformed_at_s: reforming.formed_at().map(|tick| self.seconds(tick)),
@@ -267,7 +268,7 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
             formed_at_s: formed_at.map(|tick| self.seconds(tick)),
             encircled_share: self.forming.good_share(),
             encircled_share_by_target: after.map(|after| after.encircled.iter().map(|&count| share(count)).collect()),
-            encircled_share_of_run: self.encircled_frames as f64 / self.frames.max(1) as f64,
+            encircled_share_of_run: self.encircled_moments as f64 / self.moments.max(1) as f64,
             largest_gap_deg: after.map(|after| after.largest_gap.to_degrees()),
             radial_error_median_m: after.and_then(|after| after.errors.percentile(50)),
             radial_error_p95_m: after.and_then(|after| after.errors.percentile(95)),
@@ -287,16 +288,15 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
 
 impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, D> {
     fn observe(&mut self, frame: &Frame<'_>) {
-        let Space { targets, robots, .. } = &mut self.space;
-        targets.clear();
-        targets.extend(frame.targets_um.iter().map(|&target| metres(target)));
-        robots.clear();
-        robots.extend(self.options.working(frame.tick, frame.robots));
-        self.robots.resize(frame.robots.len(), Whereabouts::default());
-        self.frames += 1;
         self.last_tick = frame.tick;
-        self.observe_encirclement(frame.tick);
         if frame.tick.is_multiple_of(self.stride) {
+            let Space { targets, robots, .. } = &mut self.space;
+            targets.clear();
+            targets.extend(frame.targets_um.iter().map(|&target| metres(target)));
+            robots.clear();
+            robots.extend(self.options.working(frame.tick, frame.robots));
+            self.robots.resize(frame.robots.len(), Whereabouts::default());
+            self.observe_encirclement(frame.tick);
             self.observe_distances();
         }
         let contacts = frame.contacts;

@@ -117,13 +117,14 @@ impl<S: Scalar> Pattern<S> {
         let converged = longest * S::from_ratio(1, 100);
         let look = |point: Point<S>| {
             let here = field.at(point, targets.iter().copied(), obstacles);
-            (self.error(network.steady_state(here.x1, here.x2)), here)
+            // The gradient at once: most steps that are tried are taken.
+            let m = network.steady_state_gradient(here.x1, here.x2);
+            (self.error(m.value), self.error_gradient(m.gradient, &here))
         };
         let mut point = start;
-        let (mut error, mut here) = look(start);
+        let (mut error, mut gradient) = look(start);
         for _ in 0..NEWTON_STEPS {
-            let slopes = network.steady_state_gradient(here.x1, here.x2).gradient;
-            let (distance, direction) = newton_step(error, self.error_gradient(slopes, &here))?;
+            let (distance, direction) = newton_step(error, gradient)?;
             if distance.abs() < converged {
                 return Some(point + direction * distance);
             }
@@ -136,7 +137,7 @@ impl<S: Scalar> Pattern<S> {
                 }
                 falls.then_some(tried)
             });
-            (error, here) = better?;
+            (error, gradient) = better?;
             point = point + step;
         }
         None

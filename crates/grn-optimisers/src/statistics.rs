@@ -159,6 +159,12 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
 /// The 95 % score interval of Wilson (1927), without continuity correction, for the probability behind
 /// `successes` of `trials` independent trials. All of 0 to 1 if there are none; more successes than trials
 /// count as `trials`.
+///
+/// ```
+/// use grn_optimisers::statistics::wilson;
+/// let (low, high) = wilson(97, 100);
+/// assert_eq!(format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high), "91.5 to 99.0 %");
+/// ```
 pub fn wilson(successes: usize, trials: usize) -> (f64, f64) {
     if trials == 0 {
         return (0.0, 1.0);

@@ -22,7 +22,7 @@ use crate::proximity::Response;
 use serde::{Deserialize, Serialize};
 
 /// The most robots in a swarm.
-pub const MAX_ROBOTS: usize = 250;
+pub const MAX_ROBOTS: usize = 10_000;
 
 /// The conditions of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

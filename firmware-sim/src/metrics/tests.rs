@@ -88,21 +88,21 @@ fn a_gap_below_180_is_the_same_as_inside_the_hull() {
 
 #[test]
 fn forming_takes_two_unbroken_seconds() {
-    // 10 frames open, 60 closed (too few), 5 open, 100 closed, 20 open, 80 closed.
+    // In quarters of a second, of which each has one moment: 10 open, 7 closed (too few), 5 open, 20 closed, 4 open, 16 closed.
     let ring = |open| (vec![(1.0, 2.0)], around(if open { &OPEN } else { &RING }, 0.5));
-    let frames: Vec<_> = [(10, true), (60, false), (5, true), (100, false), (20, true), (80, false)]
+    let frames: Vec<_> = [(10, true), (7, false), (5, true), (20, false), (4, true), (16, false)]
         .into_iter()
-        .flat_map(|(count, open)| (0..count).map(move |_| ring(open)))
+        .flat_map(|(moments, open)| (0..8 * moments).map(move |_| ring(open)))
         .collect();
     let metrics = measured(&trace_of(&frames), &options(), |_, _| Some(0.02));
-    assert_eq!(metrics.formed_at_s, Some(75.0 / 32.0));
-    assert_eq!(metrics.encircled_share, Some(180.0 / 200.0));
-    assert_eq!(metrics.encircled_share_by_target, Some(vec![180.0 / 200.0]));
-    assert_eq!(metrics.encircled_share_of_run, 240.0 / 275.0);
-    assert_eq!(metrics.duration_s, 274.0 / 32.0);
+    assert_eq!(metrics.formed_at_s, Some(22.0 / 4.0));
+    assert_eq!(metrics.encircled_share, Some(36.0 / 40.0));
+    assert_eq!(metrics.encircled_share_by_target, Some(vec![36.0 / 40.0]));
+    assert_eq!(metrics.encircled_share_of_run, 43.0 / 62.0);
+    assert_eq!(metrics.duration_s, 495.0 / 32.0);
     assert!((metrics.largest_gap_deg.unwrap() - 240.0).abs() < 1e-3);
-    assert_eq!((metrics.wall_contacts, metrics.peer_contacts), (2 * 275, 275));
-    assert_eq!((metrics.wall_contact_s, metrics.peer_contact_s), (4.0 * 275.0 / 32.0, 3.0 * 275.0 / 32.0));
+    assert_eq!((metrics.wall_contacts, metrics.peer_contacts), (2 * 496, 496));
+    assert_eq!((metrics.wall_contact_s, metrics.peer_contact_s), (4.0 * 496.0 / 32.0, 3.0 * 496.0 / 32.0));
     assert_eq!(metrics.min_wall_clearance_m, None);
     // 64 ticks are 65 frames: one frame fewer does not form.
     let frames = |n| vec![ring(false); n];
@@ -160,23 +160,23 @@ fn robots_are_lost_far_away_and_stray_for_a_while() {
 
 #[test]
 fn a_broken_robot_does_not_encircle() {
-    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 200];
-    let stop_ticks = [None, Some(100)];
+    let frames = vec![(vec![(1.0, 2.0)], around(&RING, 0.5)); 192];
+    let stop_ticks = [None, Some(96)];
     let metrics = measured(&trace_of(&frames), &MetricsOptions { stop_ticks: &stop_ticks, ..options() }, |_, _| None);
     assert_eq!((metrics.formed_at_s, metrics.encircled_share), (Some(0.0), Some(0.5)));
 }
 
 #[test]
 fn a_swarm_recovers_from_one_disturbance_and_not_from_the_next() {
-    // Closed for 3 s, broken by the first disturbance for 1 s, closed for 4 s but for 0.5 s, open after the second.
+    // Closed for 3 s, broken by the first disturbance for 1 s, closed for 4 s but for 0.5 s, open before the second.
     let closed = |tick| tick < 96 || ((128..256).contains(&tick) && !(200..216).contains(&tick));
     let frames: Vec<_> =
         (0..300).map(|tick| (vec![(1.0, 2.0)], around(if closed(tick) { &RING } else { &OPEN }, 0.5))).collect();
     let disturbed =
         |disturbances| measured(&trace_of(&frames), &MetricsOptions { disturbances, ..options() }, |_, _| None);
     let metrics = disturbed(&[96, 260, 1000]);
-    let first = Recovery { disturbed_at_s: 3.0, reformed_at_s: Some(4.0), encircled_share: Some(112.0 / 132.0) };
-    let second = Recovery { disturbed_at_s: 260.0 / 32.0, reformed_at_s: None, encircled_share: None };
+    let first = Recovery { disturbed_at_s: 3.0, reformed_at_s: Some(4.0), encircled_share: Some(14.0 / 17.0) };
+    let second = Recovery { disturbed_at_s: 264.0 / 32.0, reformed_at_s: None, encircled_share: None };
     assert_eq!(metrics.recoveries, [first, second]);
     assert_eq!(metrics.formed_at_s, Some(0.0));
     assert_eq!(metrics.recoveries, disturbed(&[96, 260]).recoveries);

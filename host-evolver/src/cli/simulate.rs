@@ -286,7 +286,7 @@ pub fn table(simulation: &Simulation) -> String {
     let percent = |share: Option<f64>| share.map_or("never formed".into(), |share| format!("{:.1} %", share * 100.0));
     let seconds = |time: Option<f64>| time.map_or("never".into(), |time| format!("{time:.1} s"));
     let mark = |good: bool| if good { "yes" } else { "NO" };
-    let rows = [
+    let mut rows = vec![
         (
             "encircled after forming",
             percent(metrics.encircled_share),
@@ -318,8 +318,14 @@ pub fn table(simulation: &Simulation) -> String {
             mark(verdict.clear_of_peers),
         ),
         ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
-        ("works", String::new(), String::new(), mark(verdict.works())),
     ];
+    if !metrics.recoveries.is_empty() {
+        let reformed = metrics.recoveries.iter().filter(|recovery| recovery.reformed_at_s.is_some()).count();
+        let least = metrics.recoveries.iter().filter_map(|recovery| recovery.encircled_share).reduce(f64::min);
+        rows.push(("re-formed after faults", format!("{reformed} of {}", metrics.recoveries.len()), String::new(), ""));
+        rows.push(("then encircled, at least", percent(least), String::new(), ""));
+    }
+    rows.push(("works", String::new(), String::new(), mark(verdict.works())));
     let mut text = format!("{:<28}{:>14}   {:<14}{}\n", "", "measured", "wanted", "met");
     for (name, measured, wanted, met) in rows {
         text += format!("{name:<28}{measured:>14}   {wanted:<14}{met}").trim_end();

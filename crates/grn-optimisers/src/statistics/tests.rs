@@ -144,6 +144,21 @@ fn wilson_intervals_are_those_of_scipy() {
     assert_eq!(wilson(4, 3), wilson(3, 3));
 }
 
+/// Newcombe (1998), "Two-sided confidence intervals for the single proportion", Stat. Med. 17, table I, method 3.
+#[test]
+fn wilson_intervals_are_those_published() {
+    let published = [
+        ((81, 263), (0.2553, 0.3662)),
+        ((15, 148), (0.0624, 0.1605)),
+        ((0, 20), (0.0000, 0.1611)),
+        ((1, 29), (0.0061, 0.1718)),
+    ];
+    for ((successes, trials), (low, high)) in published {
+        let found = wilson(successes, trials);
+        assert!((found.0 - low).abs() <= 5e-5 && (found.1 - high).abs() <= 5e-5, "{successes} of {trials}: {found:?}");
+    }
+}
+
 #[test]
 fn wilson_intervals_hold_the_rate_rise_with_it_and_mirror() {
     let mut last = (-1.0, 0.0);

@@ -64,9 +64,8 @@ impl SwarmConfig {
     pub fn check(&self) -> Result<(), InputError> {
         let &SwarmConfig { seed: _, scale, target_speed_m_per_s, settle_s, ref stops, ref lab } = self;
         lab.clone().checked()?;
-        Range::new(f64::MIN_POSITIVE, 10.0, "").check("scale", scale)?;
-        let speeds = Range::new(f64::MIN_POSITIVE, 0.127, "m/s (a robot's top speed is 0.142 m/s)");
-        speeds.check("target_speed_m_per_s", target_speed_m_per_s)?;
+        above_zero("scale", scale, 10.0, "")?;
+        above_zero("target_speed_m_per_s", target_speed_m_per_s, 0.127, " m/s (a robot's top speed is 0.142 m/s)")?;
         Range::new(0.0, 3600.0, "seconds").check("settle_s", settle_s)?;
         let robots = Range::new(0, lab.robots.count.saturating_sub(1), "(counted from 0)");
         stops.iter().try_for_each(|stop| robots.check("stops.robot", stop.robot).map(|_| ()))
@@ -83,6 +82,13 @@ impl SwarmConfig {
         let ticks: BTreeSet<u64> = self.stops.iter().map(|stop| stop.tick).filter(|&tick| tick > 0).collect();
         ticks.into_iter().collect()
     }
+}
+
+fn above_zero(key: &str, value: f64, most: f64, unit: &str) -> Result<(), InputError> {
+    if value > 0.0 && value <= most {
+        return Ok(());
+    }
+    Err(InputError::new(key, format!("{value:?}"), format!("must be above 0 and at most {most}{unit}")))
 }
 
 #[cfg(test)]

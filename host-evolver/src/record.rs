@@ -50,7 +50,7 @@ pub fn metrics(simulation: &Simulation, scenario: &Scenario) -> Value {
         "robots": simulation.config.lab.robots.count,
         "laboratory": simulation.config.lab.name,
         "scale": simulation.config.scale,
-        "conditions": simulation.config,
+        "swarm": simulation.config,
         "ring_radius_m": simulation.ring_radius_m,
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,

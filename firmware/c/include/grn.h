@@ -31,7 +31,7 @@
 
 
 // The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
-#define GRN_CONTROLLER_WORDS 255
+#define GRN_CONTROLLER_WORDS 319
 
 // How often grn_tick is to be called.
 #define GRN_TICKS_PER_SECOND 32
@@ -169,7 +169,7 @@ typedef int32_t GrnNumber;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Storage for one controller, owned by the caller: 2048 bytes, 8-aligned.
+// Storage for one controller, owned by the caller: 2560 bytes, 8-aligned.
 //
 // To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
 // controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.
@@ -465,7 +465,7 @@ GrnStatus grn_assembler_receive(struct GrnAssembler *assembler,
 #define GRN_ASSERT_LAYOUT(condition) _Static_assert(condition, "grn.h does not fit this compiler or its options")
 #endif
 #ifdef GRN_ASSERT_LAYOUT
-GRN_ASSERT_LAYOUT(sizeof(GrnController) == 2048);
+GRN_ASSERT_LAYOUT(sizeof(GrnController) == 2560);
 GRN_ASSERT_LAYOUT(sizeof(GrnAssembler) == 768);
 GRN_ASSERT_LAYOUT(sizeof(GrnStatus) == 4 && sizeof(GrnNumber) == 4);
 GRN_ASSERT_LAYOUT(sizeof(GrnMillimetres) == 4);

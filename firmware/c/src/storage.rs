@@ -7,7 +7,7 @@ use grn_core::robot::{Command, Controller, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
 /// The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
-pub const GRN_CONTROLLER_WORDS: usize = 255;
+pub const GRN_CONTROLLER_WORDS: usize = 319;
 
 /// What a controller computes with. Both follow the same law; each gives the same bits on every machine.
 #[repr(i32)]
@@ -19,7 +19,7 @@ pub enum GrnNumber {
     Q8_24 = 2,
 }
 
-/// Storage for one controller, owned by the caller: 2048 bytes, 8-aligned.
+/// Storage for one controller, owned by the caller: 2560 bytes, 8-aligned.
 ///
 /// To be zero before the first grn_load, as static storage is and as "GrnController controller = {0};" makes it: so a
 /// controller that nobody loaded is told from one that was. Loaded, it holds no pointers and may be copied.

@@ -16,6 +16,10 @@ pub struct Walk {
     heading: [i32; 2],
     /// Whether the robot sees targets and obstacles itself, or only hears of them.
     sees: bool,
+    /// Whether localisation, radio and timer are not as they should be.
+    irregular: bool,
+    /// Time from one tick to the next.
+    elapsed_us: u32,
 }
 
 const UNIT: i32 = 1 << 14;
@@ -26,7 +30,12 @@ impl Walk {
         let mut random = Random::new(!seed);
         let position = [(); 2].map(|()| random.between(-300_000, 300_000));
         let sees = random.once_in(2);
-        Walk { random, tick: 0, position, heading: [UNIT, 0], sees }
+        let irregular = random.once_in(2);
+        let elapsed_us = match random.below(4) {
+            0 if irregular => 10_000 + random.below(100_000),
+            _ => NOMINAL_TICK_US,
+        };
+        Walk { random, tick: 0, position, heading: [UNIT, 0], sees, irregular, elapsed_us }
     }
 
     /// What the robot perceives now.
@@ -35,17 +44,24 @@ impl Walk {
         let [x, y] = self.position;
         let (seen, points) = if self.sees { (2, self.random.below(MAX_SEEN_OBSTACLES as u32 + 1)) } else { (0, 0) };
         let messages = self.random.below(MAX_HEARD as u32 + 1);
+        // Some walks have fixes in all ticks and ticks on time, in the others fixes lack for a while, are old, or jump.
+        let (fixed, jumps) = if self.irregular {
+            (self.random.once_in(3) && self.tick % 64 < 44, self.random.once_in(9))
+        } else {
+            (true, false)
+        };
+        let fix = Fix {
+            position: [near(x, &mut self.random) + if jumps { 400_000 } else { 0 }, near(y, &mut self.random)],
+            heading: self.heading.map(|component| component as i16),
+            age_ms: if self.irregular { self.random.below(700) as u16 } else { 0 },
+        };
         Percept {
-            fix: Some(Fix {
-                position: [near(x, &mut self.random), near(y, &mut self.random)],
-                heading: self.heading.map(|component| component as i16),
-                age_ms: 0,
-            }),
-            elapsed_us: NOMINAL_TICK_US,
+            fix: fixed.then_some(fix),
+            elapsed_us: self.elapsed_us,
             proximity: [(); 8].map(|()| if self.random.once_in(12) { self.random.below(500) as u16 } else { u16::MAX }),
             targets: filled((0..seen).map(|target| Sighting { target, position: self.target(target, 8) })),
             obstacles: filled((0..points).map(|_| self.obstacle())),
-            heard: filled((0..messages).map(|_| Heard { message: self.message(), age_ms: 0 })),
+            heard: filled((0..messages).map(|_| self.heard())),
         }
     }
 
@@ -85,12 +101,17 @@ impl Walk {
         Millimetres { x, y }
     }
 
+    fn heard(&mut self) -> Heard {
+        let age_ms = if self.irregular { self.random.below(600) as u16 } else { 0 };
+        Heard { message: self.message(), age_ms }
+    }
+
     fn message(&mut self) -> Message {
         let [x, y] = self.position.map(|micrometres| micrometres / 1000);
         let target = self.random.below(2) as u8;
         let points = self.random.below(5);
         Message {
-            sender: self.random.below(12) as u16,
+            sender: self.random.below(12) as u16 * 100,
             position: self.near(x, y, 250),
             target: (!self.random.once_in(4)).then(|| TargetReport {
                 target,

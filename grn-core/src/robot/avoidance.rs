@@ -31,6 +31,8 @@ const SENSOR_DIRECTIONS: [(i16, i16); PROXIMITY_SENSORS] = [
 /// Free distance, in 0.1 mm, below which something pushes. Less than the 5 cm that sensors reach: robots side by side on a
 /// crowded ring would push each other off it, because eight rays do not feel the same on both sides.
 const PUSH_RANGE: i32 = 300;
+/// The same for a robot that hears nobody: all that sensors reach. Then nothing else spreads robots along the pattern.
+const LONELY_PUSH_RANGE: i32 = 500;
 
 /// A robot keeps to one side of an obstacle until nothing has been in its way for this many ticks, 1 s. If it chose anew in
 /// every tick, it would go to and fro between two obstacles that stand side by side. It changes sides before that only if
@@ -69,7 +71,8 @@ impl<S: Scalar> Avoidance<S> {
         Avoidance { strength: cruise, side: Side::Left, kept: 0 }
     }
 
-    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`.
+    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`, `ticks` of 1/32 s after
+    /// the last time.
     pub fn velocity(
         &mut self,
         wanted: Vector<S>,
@@ -77,11 +80,13 @@ impl<S: Scalar> Avoidance<S> {
         heading: Vector<S>,
         here: Point<S>,
         knowledge: &Knowledge<S>,
+        ticks: u32,
     ) -> Vector<S> {
-        let push = self.push(proximity, heading);
+        let lonely = knowledge.neighbours().known().is_empty();
+        let push = self.push(proximity, heading, if lonely { LONELY_PUSH_RANGE } else { PUSH_RANGE });
         let against = push.dot(wanted);
         if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
-            self.kept = self.kept.saturating_sub(1);
+            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
             return wanted + push;
         }
         self.around(wanted, push, against)
@@ -111,11 +116,17 @@ impl<S: Scalar> Avoidance<S> {
 
     /// A velocity away from what the proximity sensors feel.
     ///
-    /// A sensor with free distance r in front of it, r below R = [`PUSH_RANGE`], pushes with (1 - r/R)².
-    fn push(&self, proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>) -> Vector<S> {
-        let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < PUSH_RANGE);
+    /// A sensor with free distance r in front of it, r below R = `range`, 0.1 mm, pushes with (1 - r/R)².
+    fn push(&self, proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>, range: i32) -> Vector<S> {
+        let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < range);
+        // Not divided by the range in a variable: integers of 64 bits would be divided.
+        let per_range = if range == PUSH_RANGE {
+            S::from_ratio(10_000, PUSH_RANGE)
+        } else {
+            S::from_ratio(10_000, LONELY_PUSH_RANGE)
+        };
         felt.fold(Vector::ZERO, |sum, (&distance, (cos, sin))| {
-            let closeness = S::from_ratio(PUSH_RANGE - i32::from(distance), PUSH_RANGE);
+            let closeness = S::from_millionths((range - i32::from(distance)) * 100) * per_range;
             let direction = heading * unit::<S>(cos) + heading.turned_left() * unit::<S>(sin);
             sum - direction * (self.strength * closeness * closeness)
         })
@@ -141,8 +152,12 @@ mod tests {
     #[test]
     fn the_push_points_away() {
         let avoidance = Avoidance::new(0.1);
-        assert_eq!(avoidance.push(&FREE, NORTH), Vector::ZERO);
-        let push = avoidance.push(&[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX], NORTH);
+        assert_eq!(avoidance.push(&FREE, NORTH, PUSH_RANGE), Vector::ZERO);
+        let push = avoidance.push(
+            &[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
+            NORTH,
+            PUSH_RANGE,
+        );
         assert!((push.x + 0.1).abs() < 1e-4 && push.y.abs() < 1e-6, "right sensor of a northbound robot: {push:?}");
     }
 
@@ -150,7 +165,7 @@ mod tests {
     fn velocity(avoidance: &mut Avoidance<f32>, wanted: Vector<f32>, [left, right]: [u16; 2]) -> Vector<f32> {
         let mut proximity = FREE;
         (proximity[7], proximity[0]) = (left, right);
-        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new())
+        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new(), 1)
     }
 
     #[test]

@@ -1,12 +1,14 @@
 //! The controller: one tick from percept to command.
 
 use super::avoidance::Avoidance;
-use super::drive::{Drive, heading};
+use super::clock::{Clock, Pace};
+use super::drive::Drive;
 use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
+use super::localisation::{Localisation, Pose};
 use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Motion, PatternHere};
-use super::percept::{Command, Fix, Percept, PerceptError};
+use super::percept::{Command, NOMINAL_TICK_US, Percept, PerceptError};
 use super::position::millimetres;
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
@@ -61,13 +63,19 @@ pub struct Controller<S, const N: usize = DEFAULT_GENES> {
     field: Field<S>,
     step: Step,
     steps_per_tick: u8,
+    /// GRN time that is not integrated yet, in microseconds times `steps_per_tick`.
+    owed: u32,
     expression: Expression<S, N>,
     knowledge: Knowledge<S>,
     motion: Motion<S>,
     drive: Drive<S>,
     avoidance: Avoidance<S>,
-    fix: Option<Fix>,
-    tick: u32,
+    clock: Clock,
+    localisation: Localisation<S>,
+    /// Where the robot was when it last knew.
+    here: Point<S>,
+    /// Velocity of the target it accompanies, metres per second.
+    swarm_velocity: Vector<S>,
 }
 
 impl<S: Scalar, const N: usize> Controller<S, N> {
@@ -89,13 +97,16 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             field,
             step: blob.step,
             steps_per_tick: steps_per_tick(blob.time_scale, blob.step)?,
+            owed: 0,
             expression: Expression::silent(),
             knowledge: Knowledge::new(),
-            motion: Motion::new(&blob.gains, ring_radius, S::from_ratio(1, i32::from(TICKS_PER_SECOND))),
+            motion: Motion::new(&blob.gains, ring_radius),
             drive: Drive::new(S::from_f32(blob.gains.turn)),
             avoidance: Avoidance::new(S::from_f32(blob.gains.cruise)),
-            fix: None,
-            tick: 0,
+            clock: Clock::default(),
+            localisation: Localisation::new(),
+            here: Vector::ZERO,
+            swarm_velocity: Vector::ZERO,
         })
     }
 
@@ -116,31 +127,42 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         self.expression.morphogen(&self.network)
     }
 
-    /// One control tick, every 1/32 s: perceive, express genes, move. Before the first fix the robot stands still and is silent.
+    /// One control tick, nominally every 1/32 s: perceive, express genes, move.
+    ///
+    /// While the robot does not know where it is, before the first fix and after half a second without one, it stands still and
+    /// is silent.
     ///
     /// # Errors
     /// [`PerceptError`] if no robot can perceive this. Then this was no tick: nothing has changed, and
     /// the robot is to stop its wheels.
     pub fn tick(&mut self, percept: &Percept) -> Result<Command, PerceptError> {
         percept.check()?;
-        self.tick = self.tick.wrapping_add(1);
-        self.fix = percept.fix.or(self.fix);
-        let Some(Fix { position, heading, age_ms: _ }) = self.fix else { return Ok(Command::default()) };
-        let [east, north] = position.map(S::from_millionths);
-        let here = Vector::new(east, north);
-        self.knowledge.update(percept, here, self.robot);
-        let heading = self::heading(heading);
-        let wanted = self.wanted_velocity(here, percept);
-        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge);
-        let (left, right) = self.drive.wheels(velocity, heading);
-        Ok(Command { left, right, broadcast: self.broadcast(percept, here) })
+        let pace = self.clock.advance(percept.elapsed_us);
+        let pose = self.localisation.update(percept);
+        self.here = pose.map_or(self.here, |pose| pose.position);
+        let (here, now) = (self.here, self.clock.tick());
+        self.knowledge.grow_older(&pace, now, self.swarm_velocity, here);
+        let Some(Pose { heading, .. }) = pose else {
+            self.localisation.drive(0, 0);
+            return Ok(Command::default());
+        };
+        self.knowledge.update(percept, here, self.robot, now, self.swarm_velocity);
+        let wanted = self.wanted_velocity(here, percept, &pace);
+        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
+        let (left, right) = self.drive.wheels(velocity, heading, &pace);
+        self.localisation.drive(left, right);
+        Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })
     }
 
-    fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept) -> Vector<S> {
+    fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept, pace: &Pace<S>) -> Vector<S> {
+        let steps = self.steps_due(percept.elapsed_us);
         let targets = self.knowledge.targets();
         let distance = |target: &KnownTarget<S>| (target.position - here).square();
         let nearest = targets.iter().reduce(|a, b| if distance(b) < distance(a) { b } else { a });
-        let Some(&nearest) = nearest else { return Vector::ZERO };
+        let Some(&nearest) = nearest else {
+            self.swarm_velocity = Vector::ZERO;
+            return Vector::ZERO;
+        };
         let own = self.own_target(percept).and_then(|own| targets.iter().find(|target| target.target == own));
         let own = own.copied().unwrap_or(nearest);
         let known = targets.iter().map(|target| target.position);
@@ -149,14 +171,22 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let mut rest = Vec::new();
         self.network.steady_levels([Dual::input(x1, 0), Dual::input(x2, 1)], &mut rest);
         let slopes = rest.last().map_or([S::ZERO; 2], |morphogen| morphogen.gradient);
-        self.expression.advance(&self.network, [x1, x2], &rest, self.step, self.steps_per_tick);
+        self.expression.advance(&self.network, [x1, x2], &rest, self.step, steps);
         let pattern_here = PatternHere {
             error: self.pattern.error(self.expression.morphogen(&self.network)),
             gradient: self.pattern.error_gradient(slopes, &morphogens),
         };
         // The pattern here is that around another target: it does not tell the way to the own one.
         let pattern_here = (own.target == nearest.target).then_some(&pattern_here);
-        self.motion.velocity(here, pattern_here, &own, self.knowledge.neighbours())
+        self.swarm_velocity = own.velocity;
+        self.motion.velocity(here, pattern_here, &own, self.knowledge.neighbours(), pace)
+    }
+
+    /// How many RK4 steps the time since the last tick and what it left over are.
+    fn steps_due(&mut self, elapsed_us: u32) -> u8 {
+        let owed = self.owed + elapsed_us * u32::from(self.steps_per_tick);
+        self.owed = owed % NOMINAL_TICK_US;
+        (owed / NOMINAL_TICK_US).min(MAX_STEPS_PER_TICK as u32) as u8
     }
 
     /// A robot accompanies the nearest target. Those that see several themselves share them out by their own numbers:
@@ -166,9 +196,10 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         percept.targets.get(turn).map(|sighting| sighting.target)
     }
 
-    fn broadcast(&self, percept: &Percept, here: Point<S>) -> Option<Message> {
-        let turn = self.tick.wrapping_add(u32::from(self.robot));
-        if !turn.is_multiple_of(BROADCAST_PERIOD) {
+    fn broadcast(&self, percept: &Percept, here: Point<S>, ticks: u32) -> Option<Message> {
+        let turn = self.clock.tick().wrapping_add(u32::from(self.robot));
+        // Whether one of the ticks that have begun is this robot's.
+        if turn % BROADCAST_PERIOD >= ticks {
             return None;
         }
         let (target, obstacles) = self.knowledge.report(turn / BROADCAST_PERIOD, percept);
@@ -185,3 +216,6 @@ fn steps_per_tick(time_scale: f32, step: Step) -> Result<u8, LoadError> {
         Err(LoadError::StepsPerTick(steps))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,11 +1,12 @@
 //! What a robot knows of the world: its own sightings and what others broadcast, with their age.
 
+use super::clock::{Pace, ticks_of};
 use super::epuck2::TICKS_PER_SECOND;
 use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
 use super::percept::{Heard, MAX_TARGETS, Percept, Sighting};
-use super::position::{Millimetres, metres, millimetres};
+use super::position::{metres, millimetres};
 use crate::bounded::filled;
 use crate::geometry::{Point, Vector};
 use crate::scalar::Scalar;
@@ -22,7 +23,6 @@ pub struct Knowledge<S> {
     targets: Vec<KnownTarget<S>, MAX_TARGETS>,
     obstacles: ObstacleMap<S>,
     neighbours: Neighbours<S>,
-    tick: u32,
 }
 
 /// A target as this robot knows it.
@@ -39,7 +39,7 @@ pub struct KnownTarget<S> {
 
 impl<S: Scalar> Knowledge<S> {
     pub fn new() -> Self {
-        Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Neighbours::new(), tick: 0 }
+        Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Neighbours::new() }
     }
 
     pub fn targets(&self) -> &[KnownTarget<S>] {
@@ -51,14 +51,15 @@ impl<S: Scalar> Knowledge<S> {
         self.obstacles.near()
     }
 
-    pub fn neighbours(&self) -> &[Neighbour<S>] {
-        self.neighbours.known()
+    pub fn neighbours(&self) -> &Neighbours<S> {
+        &self.neighbours
     }
 
     /// Whether what pushes the robot at `here` this way can be a neighbour or a wall that it knows.
     pub fn knows_what_pushes(&self, here: Point<S>, push: Vector<S>) -> bool {
+        let seen_from = self.neighbours.seen_from(here);
         let pushes = |neighbour: &Neighbour<S>| {
-            let offset = here - neighbour.position;
+            let offset = neighbour.offset(seen_from);
             // Within 45° of the way it pushes.
             offset.cross(push).abs() < offset.dot(push)
         };
@@ -67,15 +68,35 @@ impl<S: Scalar> Knowledge<S> {
         close_neighbours.any(pushes) || (self.obstacles.is_close() && self.obstacles().iter().any(on_this_side))
     }
 
-    /// Takes in one tick's percept of robot number `own`, which is at `here`.
+    /// Lets everything known grow older, up to the clock's tick `now`: targets move on, and the neighbours with the
+    /// robot's own target, whose `velocity` (metres per second) is given. The robot is at `here`.
+    pub fn grow_older(&mut self, pace: &Pace<S>, now: u32, velocity: Vector<S>, here: Point<S>) {
+        self.neighbours.carry(velocity * pace.seconds);
+        let mut oldest = 0;
+        for target in &mut self.targets {
+            target.age = target.age.saturating_add(pace.ticks as u8);
+            target.position = target.position + target.velocity * pace.seconds;
+            oldest = oldest.max(target.age);
+        }
+        if oldest > FORGET_TARGET_TICKS {
+            self.targets.retain(|target| target.age <= FORGET_TARGET_TICKS);
+        }
+        // One of the ticks that have begun is a multiple of the unit.
+        let last = now.wrapping_sub(1);
+        if last % OBSTACLE_AGE_UNIT < pace.ticks {
+            self.obstacles.grow_older(millimetres(here));
+            self.neighbours.forget(last);
+        }
+    }
+
+    /// Takes in the percept of robot number `own` in tick `now`; it is at `here`, and its own target moves at `velocity`.
     ///
     /// Of the messages heard in a tick, only one has its obstacle points learned. That bounds the time of a tick, and costs
     /// little: walls stand still, so the other points can be learned when they are told again.
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
-    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16) {
+    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16, now: u32, velocity: Vector<S>) {
         let here = millimetres(here);
-        self.grow_older(here);
         for sighting in &percept.targets {
             self.see_target(*sighting);
         }
@@ -83,17 +104,21 @@ impl<S: Scalar> Knowledge<S> {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
         }
         let mut own_messages = 0;
-        for Heard { message, age_ms: _ } in &percept.heard {
+        for &Heard { ref message, age_ms } in &percept.heard {
             if message.sender == own {
                 own_messages += 1;
                 continue;
             }
             if let Some(report) = &message.target {
-                self.hear_of_target(report);
+                self.hear_of_target(report, age_ms);
             }
-            self.neighbours.meet(message.sender, message.position, here, self.tick);
+            let mut carried = self.neighbours.carried();
+            if age_ms > 0 {
+                carried = carried - velocity * seconds(age_ms);
+            }
+            self.neighbours.meet(message.sender, message.position, carried, here, now);
         }
-        let turn = self.whose_turn(percept.heard.len() - own_messages);
+        let turn = whose_turn(now, percept.heard.len() - own_messages);
         let chosen = match own_messages {
             0 => percept.heard.get(turn),
             _ => percept.heard.iter().filter(|heard| heard.message.sender != own).nth(turn),
@@ -102,35 +127,6 @@ impl<S: Scalar> Knowledge<S> {
             self.obstacles.learn(report);
         }
         self.obstacles.find_near();
-    }
-
-    /// Which one of so many messages has its obstacle points learned.
-    ///
-    /// Robots speak periodically, so the same ones are heard together again and again, and each repeats its points with a
-    /// period of its own. If the choice were periodic too, the periods could match and some points would never be learned.
-    /// Multiples of the golden ratio, modulo 1, are spread evenly and have no period.
-    fn whose_turn(&self, messages: usize) -> usize {
-        const GOLDEN_RATIO_Q32: u32 = 0x9e37_79b9;
-        let share = (self.tick / BROADCAST_PERIOD).wrapping_mul(GOLDEN_RATIO_Q32);
-        ((u64::from(share) * messages as u64) >> u32::BITS) as usize
-    }
-
-    fn grow_older(&mut self, here: Millimetres) {
-        if self.tick.is_multiple_of(OBSTACLE_AGE_UNIT) {
-            self.obstacles.grow_older(here);
-            self.neighbours.forget(self.tick);
-        }
-        self.tick = self.tick.wrapping_add(1);
-        let tick = S::from_ratio(1, i32::from(TICKS_PER_SECOND));
-        let mut oldest = 0;
-        for target in &mut self.targets {
-            target.age = target.age.saturating_add(1);
-            target.position = target.position + target.velocity * tick;
-            oldest = oldest.max(target.age);
-        }
-        if oldest > FORGET_TARGET_TICKS {
-            self.targets.retain(|target| target.age <= FORGET_TARGET_TICKS);
-        }
     }
 
     /// An alpha-beta filter: sightings correct the position by 2/5 and the velocity by 1/32 of the surprise per tick.
@@ -152,19 +148,22 @@ impl<S: Scalar> Knowledge<S> {
     }
 
     /// A report replaces what the robot knows of that target if it is more recent.
-    fn hear_of_target(&mut self, report: &TargetReport) {
-        let age = report.age.saturating_add(1);
+    ///
+    /// It is older by the time it was on its way, and by one tick at least: else robots would tell each other for ever
+    /// what nobody sees any more.
+    fn hear_of_target(&mut self, report: &TargetReport, age_ms: u16) {
+        let on_its_way = if age_ms == 0 { 1 } else { ticks_of(age_ms).clamp(1, u32::from(u8::MAX)) as u8 };
+        let age = report.age.saturating_add(on_its_way);
         let known = self.targets.iter_mut().find(|known| known.target == report.target);
         if age > FORGET_TARGET_TICKS || known.as_ref().is_some_and(|known| age >= known.age) {
             return;
         }
         let [east, north] = report.velocity.map(|mm| S::from_millionths(i32::from(mm) * 1000));
-        let told = KnownTarget {
-            target: report.target,
-            position: metres(report.position),
-            velocity: Vector::new(east, north),
-            age,
-        };
+        let (velocity, mut position) = (Vector::new(east, north), metres(report.position));
+        if age_ms > 0 {
+            position = position + velocity * seconds(age_ms);
+        }
+        let told = KnownTarget { target: report.target, position, velocity, age };
         match known {
             Some(known) => *known = told,
             None => {
@@ -194,6 +193,22 @@ impl<S: Scalar> Knowledge<S> {
         };
         (target, obstacles)
     }
+}
+
+/// Which one of so many messages has its obstacle points learned in tick `now`.
+///
+/// Robots speak periodically, so the same ones are heard together again and again, and each repeats its points with a
+/// period of its own. If the choice were periodic too, the periods could match and some points would never be learned.
+/// Multiples of the golden ratio, modulo 1, are spread evenly and have no period.
+fn whose_turn(now: u32, messages: usize) -> usize {
+    const GOLDEN_RATIO_Q32: u32 = 0x9e37_79b9;
+    let share = (now / BROADCAST_PERIOD).wrapping_mul(GOLDEN_RATIO_Q32);
+    ((u64::from(share) * messages as u64) >> u32::BITS) as usize
+}
+
+/// Milliseconds as seconds.
+fn seconds<S: Scalar>(milliseconds: u16) -> S {
+    S::from_millionths(i32::from(milliseconds) * 1000)
 }
 
 fn nth_in_turn<T>(items: &[T], turn: u32) -> Option<&T> {

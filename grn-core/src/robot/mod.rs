@@ -5,11 +5,13 @@
 //! recorded, sent over a wire and replayed bit for bit, and a robot without a floating-point unit needs none.
 
 mod avoidance;
+mod clock;
 pub mod controller;
 mod drive;
 pub mod epuck2;
 mod knowledge;
 pub mod link;
+mod localisation;
 pub mod message;
 mod motion;
 mod neighbours;

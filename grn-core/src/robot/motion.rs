@@ -30,8 +30,9 @@
 //! the target is not believed: there ∇φ is small, down to a few units of Q8.24, and obstacles may outweigh the target.
 //! The robot then heads for its target until the pattern can be sensed.
 
+use super::clock::Pace;
 use super::knowledge::KnownTarget;
-use super::neighbours::Neighbour;
+use super::neighbours::{Neighbour, Neighbours};
 use crate::blob::Gains;
 use crate::geometry::{Point, Vector};
 use crate::pattern::newton_step;
@@ -66,13 +67,12 @@ pub struct Motion<S> {
     cruise: S,
     ring_radius: S,
     per_ring_radius: S,
-    tick: S,
     protein: Vector<S>,
 }
 
 impl<S: Scalar> Motion<S> {
-    /// A law at rest; `ring_radius` in world metres, `tick` the control period in seconds.
-    pub fn new(gains: &Gains, ring_radius: S, tick: S) -> Self {
+    /// A law at rest; `ring_radius` in world metres.
+    pub fn new(gains: &Gains, ring_radius: S) -> Self {
         let range = S::from_f32(gains.repulsion_range) * ring_radius;
         Motion {
             attraction: S::from_f32(gains.attraction),
@@ -85,7 +85,6 @@ impl<S: Scalar> Motion<S> {
             cruise: S::from_f32(gains.cruise),
             ring_radius,
             per_ring_radius: S::ONE / ring_radius,
-            tick,
             protein: Vector::ZERO,
         }
     }
@@ -96,18 +95,29 @@ impl<S: Scalar> Motion<S> {
         here: Point<S>,
         pattern: Option<&PatternHere<S>>,
         target: &KnownTarget<S>,
-        neighbours: &[Neighbour<S>],
+        neighbours: &Neighbours<S>,
+        pace: &Pace<S>,
     ) -> Vector<S> {
         let to_target = target.position - here;
         let Way { distance, direction } = pattern
             .and_then(|pattern| self.way_to_pattern(pattern, to_target))
             .unwrap_or_else(|| self.way_to_target(to_target));
         let to_pattern = direction * distance;
-        let repulsion = self.repulsion_from(here, direction.turned_left(), neighbours);
-        let saturation = S::ONE + distance.abs() * self.per_ring_radius;
-        let production = to_pattern * (self.drive / saturation) + repulsion * self.repulsion;
-        self.protein = self.protein + (production - self.protein * self.decay) * self.tick;
-        let velocity = target.velocity + to_pattern * self.attraction + self.protein * self.coupling;
+        let repulsion = self.repulsion_from(neighbours.seen_from(here), direction.turned_left(), neighbours.known());
+        let mut production = repulsion * self.repulsion;
+        if self.drive != S::ZERO {
+            let saturation = S::ONE + distance.abs() * self.per_ring_radius;
+            production = production + to_pattern * (self.drive / saturation);
+        }
+        let decayed = self.decay * pace.seconds;
+        self.protein = if decayed > S::ONE.over_power_of_two(1) {
+            // An explicit step would overshoot at this pace.
+            let kept = S::ONE / (S::ONE + decayed);
+            (self.protein + production * pace.seconds) * kept
+        } else {
+            self.protein + (production - self.protein * self.decay) * pace.seconds
+        };
+        let velocity = target.velocity + to_pattern * pace.held(self.attraction) + self.protein * self.coupling;
         velocity.limited(self.cruise)
     }
 
@@ -132,9 +142,9 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// D: along the pattern's unit `tangent`, away from each neighbour at distance d < R, (1 - d/R)² strong.
-    fn repulsion_from(&self, here: Point<S>, tangent: Vector<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
+    fn repulsion_from(&self, seen_from: Point<S>, tangent: Vector<S>, neighbours: &[Neighbour<S>]) -> Vector<S> {
         let limit = self.range.square_sum(S::ZERO);
-        let offsets = neighbours.iter().map(|neighbour| here - neighbour.position);
+        let offsets = neighbours.iter().map(|neighbour| neighbour.offset(seen_from));
         let along = offsets.filter(|offset| offset.square() < limit).fold(S::ZERO, |sum, offset| {
             let closeness = S::ONE - offset.length() * self.per_range;
             let strength = closeness * closeness;

@@ -19,8 +19,8 @@ pub const MAX_POSITION: i32 = 32_767_000;
 pub const HEADING_UNIT: i16 = 1 << 14;
 /// How far the length of a heading may be from [`HEADING_UNIT`]: a 32nd of it.
 ///
-/// A heading that is too long makes the robot faster by the same share and turns it no other way, so a little does no harm:
-/// that of a table of sines, or of a heading that is turned by small angles again and again. A wrong unit (degrees, 2^-15,
+/// The controller makes the length 1, so a little does no harm: that of a table of sines, or of a heading that is turned by
+/// small angles again and again. A wrong unit (degrees, 2^-15,
 /// thousandths) or a heading that was never set is much farther off.
 pub const HEADING_TOLERANCE: i16 = HEADING_UNIT / 32;
 /// The time from one tick to the next that gains and blobs are made for, microseconds: 1/32 s.

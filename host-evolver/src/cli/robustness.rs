@@ -77,7 +77,7 @@ impl Experiment<'_> {
             "blob": identity,
             "number": self.number,
             "scenario": self.scenario.name(),
-            "conditions": self.config,
+            "swarm": self.config,
             "realities": robustness.realities,
             "works": robustness.works(),
             "of": robustness.realities.len(),

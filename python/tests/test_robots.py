@@ -21,7 +21,7 @@ def test_a_robot_that_sees_a_target_drives_towards_it(blob):
         assert command.rad_per_s[0] == pytest.approx(left * 2 * math.pi / 1000)
         assert command.m_per_s[1] == pytest.approx(right * 0.041 * math.pi / 1000)
         assert len(messages) == 4
-        assert messages[0].sender == 3 and messages[0].position == (1.0, 2.0)
+        assert messages[0].sender == 3 and messages[0].position == pytest.approx((1.0, 2.0), abs=0.02)
         assert messages[-1].target.target == 0 and messages[-1].target.position == pytest.approx((2.2, 2.0), abs=0.002)
         assert 0.0 <= robot.morphogen <= 1.0
 
@@ -42,6 +42,16 @@ def test_robots_give_the_bits_of_the_simulator(blob, channel):
     for tick in range(200):
         percept = dict(position=(1.0 + tick * 1e-3, 2.0), heading=tick * 0.01, targets={0: (1.4, 2.1)}, obstacles=[(1.0, 2.6)])
         assert first.tick(**percept) == second.tick(**percept)
+
+
+def test_a_robot_without_a_pose_stops_in_the_end(blob):
+    robot = grn.Robot(blob, 0)
+    for _ in range(32):
+        command = robot.tick(position=(1.0, 2.0), heading=0.0, targets={0: (2.2, 2.0)})
+    assert command.steps_per_s != (0, 0)
+    for _ in range(32):
+        command = robot.tick()
+    assert command.steps_per_s == (0, 0)
 
 
 @pytest.mark.parametrize(

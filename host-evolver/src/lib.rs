@@ -14,6 +14,7 @@ pub mod files;
 pub mod model;
 pub mod quoting;
 pub mod realities;
+pub mod record;
 pub mod results;
 pub mod run;
 pub mod sectors;

@@ -3,6 +3,8 @@
 use crate::evaluation::Model;
 use firmware_sim::brain::Brain;
 use firmware_sim::config::SwarmConfig;
+use firmware_sim::geometry::Walls;
+use firmware_sim::lab::Laboratory;
 use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
@@ -29,6 +31,14 @@ pub const ENOUGH_ACCURACY: f64 = 0.10;
 pub const ENOUGH_UNKNOWN: f64 = 0.05;
 /// Most contacts between robots, for each robot: one may bump into another while the swarm forms, not again and again.
 pub const ENOUGH_PEER_CONTACTS: f64 = 1.0;
+
+/// Speed of the fastest target when nothing else is said, metres per second in the world.
+pub const DEFAULT_SPEED: f64 = 0.03;
+
+/// The usual run in a laboratory for a blob of this scale.
+pub fn usual_config(scale: f32, lab: Laboratory) -> SwarmConfig {
+    SwarmConfig { scale: f64::from(scale), target_speed_m_per_s: DEFAULT_SPEED, lab, ..SwarmConfig::default() }
+}
 
 /// Why there was no simulation.
 #[derive(Debug)]
@@ -173,15 +183,8 @@ pub(crate) fn run<B: Brain>(
     check_length(scenario, &config).map_err(SimulationError::Config)?;
     let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
-    let (walls, stop_ticks, disturbances) = (swarm.walls().clone(), config.stop_ticks(), config.disturbances());
-    let options = MetricsOptions {
-        walls: &walls,
-        ring_radius_m: ruler.ring_radius(),
-        ticks_per_second: TICKS_PER_SECOND,
-        disturbances: &disturbances,
-        stop_ticks: &stop_ticks,
-    };
-    let mut meter = Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets));
+    let marks = Marks::of(scenario, &config);
+    let mut meter = meter(&ruler, &marks, TICKS_PER_SECOND);
     let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
     let outcome = swarm.run(end, &mut (&mut meter, observer), |progress| watch(share(progress)));
     match outcome.map_err(SimulationError::Brain)? {
@@ -190,6 +193,40 @@ pub(crate) fn run<B: Brain>(
     }
     let (metrics, ring_radius_m, blob) = (meter.metrics(), ruler.ring_radius(), blob.identity());
     Ok(Some(Simulation { metrics, ring_radius_m, blob, number, config }))
+}
+
+/// What a [`meter`] of a run borrows.
+pub struct Marks {
+    walls: Walls,
+    stop_ticks: Vec<Option<u64>>,
+    disturbances: Vec<u64>,
+}
+
+impl Marks {
+    /// Of a run with this configuration.
+    pub fn of(scenario: &Scenario, config: &SwarmConfig) -> Self {
+        Marks {
+            walls: scenario.walls().scaled(config.scale),
+            stop_ticks: config.stop_ticks(),
+            disturbances: config.disturbances(),
+        }
+    }
+}
+
+/// Measures a run, wherever its robots drive: those of another simulator are measured with the same ruler.
+pub fn meter<'a>(
+    ruler: &'a PatternRuler<'_>,
+    marks: &'a Marks,
+    ticks_per_second: u16,
+) -> Meter<'a, impl FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> {
+    let options = MetricsOptions {
+        walls: &marks.walls,
+        ring_radius_m: ruler.ring_radius(),
+        ticks_per_second,
+        disturbances: &marks.disturbances,
+        stop_ticks: &marks.stop_ticks,
+    };
+    Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets))
 }
 
 /// The longest run, simulated hours; who asks for more has mistyped a speed.

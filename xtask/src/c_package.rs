@@ -46,6 +46,8 @@ pub fn checks() -> Vec<(&'static str, Result<(), String>)> {
         ("a program without any shared library links", package.with_pkg_config("cc", "first.c", Linking::Static)),
         ("CMake finds both libraries for C and C++", package.with_cmake()),
         ("CMake refuses other versions", package.other_versions()),
+        ("the controller for Webots compiles", package.controller("webots")),
+        ("the controller for ARGoS compiles", package.controller("argos")),
     ]
 }
 
@@ -207,6 +209,17 @@ impl Package {
             let library = if linking == Linking::Shared { "shared" } else { "static" };
             self.runs(&self.folder.join(format!("build/first-{language}-{library}")), linking)
         })
+    }
+
+    /// Compiles a simulator's controller against the installed package, and declarations in the simulator's place.
+    fn controller(&self, simulator: &str) -> Result<(), String> {
+        let project = self.repository.join("examples").join(simulator).join("controllers/grn");
+        let build = format!("build {simulator}");
+        let mut configure = self.cmake(&project, &build);
+        configure.arg(format!("-D{}_STUBS=ON", simulator.to_uppercase()));
+        configure.arg("-DCMAKE_C_FLAGS=-Wall -Wextra -Werror").arg("-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror");
+        printed(&mut configure)?;
+        printed(Command::new("cmake").arg("--build").arg(self.folder.join(&build))).map(drop)
     }
 
     fn other_versions(&self) -> Result<(), String> {

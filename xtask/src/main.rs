@@ -3,6 +3,7 @@
 mod c_examples;
 mod c_install;
 mod c_package;
+mod python;
 mod tally;
 mod target;
 
@@ -22,6 +23,11 @@ const HELP: &str = "cargo xtask TASK
          header, the examples' expected output and the library's golden costs anew
   c-install PREFIX
          build the C library and install it under PREFIX: header, static and shared library, pkg-config file, CMake package
+  python build the Python package and run its tests and examples, in an environment of its own in target/python; a part of
+         test
+  crosscheck [--seeds N] [--labs NAME…] [--models NAME…]
+         drive the same robots in MuJoCo and in our simulator and write docs/crosscheck.md; goes on where it was stopped. A
+         short form is a part of python
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
@@ -43,6 +49,12 @@ fn main() -> ExitCode {
             tally.close(succeeded)
         }
         "c-install" => c_install(),
+        "python" => {
+            let mut tally = Tally::default();
+            let succeeded = python::check(&mut tally);
+            tally.close(succeeded)
+        }
+        "crosscheck" => python::crosscheck(env::args().skip(2)),
         "bench" => cargo(&["bench", "--workspace", "--benches"], &[]),
         "bless" => ["models", "digest"].iter().all(|what| {
             cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless", "--", what], &[])
@@ -92,6 +104,7 @@ fn test() -> bool {
         cargo_test(&["test", "--package", "grn-core", "--features", "micromath", "--no-fail-fast"], &mut tally),
         images(false, &mut tally),
         c_library(false, &mut tally),
+        python::check(&mut tally),
         cargo(&["doc", "--workspace", "--no-deps", "--quiet"], &[("RUSTDOCFLAGS", "-D warnings")]),
     ];
     tally.close(succeeded.into_iter().all(|success| success))

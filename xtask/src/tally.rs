@@ -39,10 +39,15 @@ impl Tally {
         failed == 0 && self.passed > 0
     }
 
-    /// Counts a line like `test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; …`.
+    /// Counts a line like `test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; …`, or like pytest's
+    /// `===== 1 failed, 3 passed, 1 skipped in 0.10s =====`.
     fn count(&mut self, line: &str) {
-        let Some((_, counts)) = line.split_once("test result: ") else { return };
-        for part in counts.split([';', '.']) {
+        let counts = match line.split_once("test result: ") {
+            Some((_, counts)) => counts,
+            None if line.starts_with("===") && line.contains(" in ") => line.trim_matches(['=', ' ']),
+            None => return,
+        };
+        for part in counts.split([';', '.', ',']) {
             let mut words = part.split_whitespace();
             let (Some(number), Some(what)) = (words.next().and_then(|word| word.parse::<usize>().ok()), words.next())
             else {
@@ -51,7 +56,9 @@ impl Tally {
             match what {
                 "passed" => self.passed += number,
                 "failed" => self.failed += number,
-                "ignored" => self.ignored += number,
+                "ignored" | "skipped" => self.ignored += number,
+                // Of pytest: what fails before or after a test.
+                "error" | "errors" => self.failed += number,
                 _ => {}
             }
         }
@@ -69,5 +76,8 @@ mod tests {
         tally.count("test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out; finished in 0.00s");
         tally.count("test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 5 filtered out");
         assert_eq!(tally, Tally { passed: 5, failed: 1, ignored: 1 });
+        tally.count("============================= test session starts ==============================");
+        tally.count("========== 1 failed, 40 passed, 2 skipped, 1 error in 12.34s ==========");
+        assert_eq!(tally, Tally { passed: 45, failed: 3, ignored: 3 });
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use syn::visit::Visit;
 
 /// Crates from the ground floor up: each may use those before it.
-const FLOORS: [&str; 12] = [
+const FLOORS: [&str; 13] = [
     "grn-core",
     "grn-input",
     "grn-optimisers",
@@ -16,6 +16,7 @@ const FLOORS: [&str; 12] = [
     "grn-link",
     "firmware-sim",
     "host-evolver",
+    "grn-python",
     "grn-trials",
     "grn-firmware",
     "grn-c",
@@ -33,7 +34,8 @@ fn root() -> PathBuf {
 
 /// Name, folder and manifest of every crate of the workspace and of the firmware's.
 fn crates() -> Vec<(String, PathBuf, toml::Table)> {
-    let folders = ["grn-core", "firmware-sim", "host-evolver", "tests", "xtask"].map(|name| root().join(name));
+    let folders =
+        ["grn-core", "firmware-sim", "host-evolver", "python", "tests", "xtask"].map(|name| root().join(name));
     let nested = ["crates", "firmware"].into_iter().flat_map(|name| {
         let entries = fs::read_dir(root().join(name)).unwrap();
         entries.map(|entry| entry.unwrap().path()).filter(|path| path.join("Cargo.toml").exists())

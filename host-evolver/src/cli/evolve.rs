@@ -1,7 +1,7 @@
 //! `grn evolve`.
 
 use super::conditions::Conditions;
-use super::simulate::{self, check_swarm, table, usual_config, watched};
+use super::simulate::{check_swarm, table, watched};
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
 use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, Objectives, Search, Settings};
@@ -9,7 +9,9 @@ use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::notation::Digits;
 use crate::model::variation::MotifSet;
+use crate::record;
 use crate::run::{Manifest, Results, RunFolder};
+use crate::simulation::usual_config;
 use clap::ValueEnum;
 use firmware_sim::scenario::Scenario;
 use grn_core::scalar::NumberType;
@@ -100,14 +102,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Ok(Answer::No);
     }
     let (robots, lab) = (config.lab.robots.count, config.lab.name.clone());
-    let mut recorder = simulate::recorder(&scenario, &config);
+    let mut recorder = record::recorder(&scenario, &config);
     let knee_path = run.path("knee.grn");
     let simulation = watched(&knee_path, &knee, &scenario, config, NumberType::F32, &mut recorder, &stop);
     // World, swarm and models were checked before the search.
     let simulation = simulation.map_err(Failure::of_program)?;
-    for (name, content) in simulate::files(&simulation, recorder.trace(), &scenario, &knee) {
-        contents.insert(format!("simulation/{name}"), content);
-    }
+    let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &knee);
+    not_drawn.iter().for_each(output::notice);
+    contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
     run.finish(&contents)?;
     output::report(format!("the knee on {robots} simulated robots in the laboratory {lab} (simulation/trace.svg):"));
     output::report(table(&simulation));

@@ -5,20 +5,21 @@ use super::robustness;
 use super::{Answer, Failure, about, interrupt, options, output, progress, take_folder};
 #[cfg(unix)]
 use crate::emulation::{self, Emulation, EmulationError};
-use crate::figures;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::realities;
-use crate::simulation::{self, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError};
+use crate::record;
+use crate::simulation::{
+    self, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError, usual_config,
+};
 use firmware_sim::config::SwarmConfig;
-use firmware_sim::lab::{Laboratory, MAX_ROBOTS};
+use firmware_sim::lab::MAX_ROBOTS;
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm;
-use firmware_sim::trace::{Observer, Recorder, Trace, TraceHeader};
+use firmware_sim::trace::Observer;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_input::{Found, InputError, Range};
 use indicatif::ProgressBar;
-use serde_json::json;
 use std::io::ErrorKind;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -27,9 +28,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Robots in QEMU when nothing else is said.
 const DEFAULT_EMULATED: usize = 4;
-/// Speed of the fastest target when nothing else is said, metres per second in the world.
-pub const DEFAULT_SPEED: f64 = 0.03;
-
 const BARS: &str = "\
 A run works (exit code 0) if all of this holds:
   encircled         every target, in at least 98 % of the moments after the swarm formed
@@ -136,15 +134,17 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let config = realities::reality(&config, arguments.reality);
     let simulation = match &lock {
         Some(lock) => {
-            let mut recorder = recorder(&scenario, &config);
+            let mut recorder = record::recorder(&scenario, &config);
             let simulation = pool.install(|| simulated(arguments, &blob, &scenario, config, &mut recorder, &stop))?;
-            keep(lock.folder(), &files(&simulation, recorder.trace(), &scenario, &blob))?;
+            let (contents, not_drawn) = record::contents(&simulation, recorder.trace(), &scenario, &blob);
+            not_drawn.iter().for_each(output::notice);
+            keep(lock.folder(), &contents)?;
             simulation
         }
         None => pool.install(|| simulated(arguments, &blob, &scenario, config, &mut (), &stop))?,
     };
     if arguments.json {
-        output::product_json(&metrics_json(&simulation, &scenario))?;
+        output::product_json(&record::metrics(&simulation, &scenario))?;
     } else {
         output::report(table(&simulation));
     }
@@ -221,11 +221,6 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
     })
 }
 
-/// The usual run in a laboratory for a blob of this scale.
-pub fn usual_config(scale: f32, lab: Laboratory) -> SwarmConfig {
-    SwarmConfig { scale: f64::from(scale), target_speed_m_per_s: DEFAULT_SPEED, lab, ..SwarmConfig::default() }
-}
-
 /// Runs a simulation with a progress bar and Ctrl-C.
 pub fn watched(
     path: &Path,
@@ -263,29 +258,6 @@ fn with_progress(
     result?.ok_or_else(|| Failure::Interrupted("The simulation was not kept; run it again.".into()))
 }
 
-/// The most memory that the record of a run takes, bytes. To write it as text and as bytes takes four times as much more.
-const MOST_RECORD: usize = 100_000_000;
-
-/// Keeps a run for its files.
-pub fn recorder(scenario: &Scenario, config: &SwarmConfig) -> Recorder {
-    Recorder::new(TraceHeader::of(scenario, config), MOST_RECORD)
-}
-
-/// Trace, metrics and picture of a run, by the names of their files.
-pub fn files(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &Blob) -> Contents {
-    let metrics = format!("{:#}\n", metrics_json(simulation, scenario));
-    let mut contents = Contents::from([
-        ("trace.bin".into(), trace.encode()),
-        ("trace.csv".into(), trace.to_csv()),
-        ("metrics.json".into(), metrics.into_bytes()),
-    ]);
-    match figures::run(simulation, trace, scenario, blob) {
-        Ok(svg) => drop(contents.insert("trace.svg".into(), svg.into_bytes())),
-        Err(error) => output::notice(format_args!("no trace.svg: {error}")),
-    }
-    contents
-}
-
 /// Takes the folder of `--out` before anything is computed for it.
 fn take(folder: &Path) -> Result<FolderLock, Failure> {
     let lock = take_folder(folder)?;
@@ -305,26 +277,6 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
         }
     }
     Ok(())
-}
-
-fn metrics_json(simulation: &Simulation, scenario: &Scenario) -> serde_json::Value {
-    let identity: String = simulation.blob.iter().map(|byte| format!("{byte:02x}")).collect();
-    json!({
-        "grn": files::VERSION,
-        "blob": identity,
-        "number": simulation.number,
-        "scenario": scenario.name(),
-        "seed": simulation.config.seed,
-        "robots": simulation.config.lab.robots.count,
-        "laboratory": simulation.config.lab.name,
-        "scale": simulation.config.scale,
-        "swarm": simulation.config,
-        "ring_radius_m": simulation.ring_radius_m,
-        "radial_error_share": simulation.radial_error_share(),
-        "metrics": simulation.metrics,
-        "verdict": simulation.verdict(),
-        "works": simulation.verdict().works(),
-    })
 }
 
 /// What came out, one bar a line.

@@ -102,7 +102,8 @@ pub fn programs(wanted: &[(&str, &[&'static str])]) -> Result<(), String> {
     if missing.is_empty() { Ok(()) } else { install(&missing) }
 }
 
-fn install(packages: &[&str]) -> Result<(), String> {
+/// Installs Debian packages if that can be done, else says how to get them.
+pub fn install(packages: &[&str]) -> Result<(), String> {
     let arguments = ["install", "-y", "--no-install-recommends", "--allow-downgrades"];
     println!("apt-get {} {}", arguments.join(" "), packages.join(" "));
     // Though it fails where any source cannot be reached, what is needed may come from the others.

@@ -1,0 +1,9 @@
+// Declarations of what the controller calls, for compiling where ARGoS is absent. ARGoS' own header has the same.
+#pragma once
+#include <argos3/core/utility/datatypes/datatypes.h>
+namespace argos {
+class CRadians {
+public:
+    Real GetValue() const;
+};
+}

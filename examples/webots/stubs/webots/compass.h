@@ -1,0 +1,5 @@
+// Declarations of what the controller calls, for compiling where Webots is absent. Webots' own header has the same.
+#pragma once
+#include <webots/types.h>
+void wb_compass_enable(WbDeviceTag tag, int sampling_period);
+const double *wb_compass_get_values(WbDeviceTag tag);

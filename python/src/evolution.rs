@@ -1,0 +1,188 @@
+//! Evolution runs, with the folder that `grn evolve` leaves.
+
+use crate::attention::attended;
+use crate::blob::Blob;
+use crate::errors::{about, failed, refused};
+use crate::laboratory::found;
+use crate::scenario::GivenScenario;
+use firmware_sim::lab::Laboratory;
+use firmware_sim::scenario;
+use firmware_sim::swarm;
+use grn_core::scalar::NumberType;
+use host_evolver::evaluation::World;
+use host_evolver::evolve::{Advance, Milestone, Objectives, Search, Settings};
+use host_evolver::model::variation::MotifSet;
+use host_evolver::record;
+use host_evolver::run::{Manifest, RunFolder};
+use host_evolver::simulation::{self, check_length, usual_config};
+use pyo3::prelude::*;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+
+/// How far an evolution has come after a generation.
+#[pyclass(frozen, get_all, module = "grn")]
+#[derive(Clone)]
+pub struct Progress {
+    /// Evaluations of f2 spent.
+    evaluations: usize,
+    /// Evaluations in all.
+    budget: usize,
+    /// Best f2 of a feasible model, or None.
+    best_f2: Option<f64>,
+    /// Feasible models in the population.
+    feasible: usize,
+    /// Models on the feasible front.
+    front: usize,
+    /// Share of the reference box that the front dominates, 0 to 1.
+    hypervolume: f64,
+}
+
+#[pymethods]
+impl Progress {
+    fn __repr__(&self) -> String {
+        let Progress { evaluations, budget, best_f2, .. } = self;
+        let best = best_f2.map_or("None".into(), |f2| f2.to_string());
+        format!("<Progress {evaluations}/{budget} evaluations, best_f2={best}>")
+    }
+}
+
+/// What an evolution left.
+#[pyclass(frozen, get_all, module = "grn")]
+pub struct Found {
+    /// The knee that is deployed.
+    knee: Py<Blob>,
+    /// Whether every model of the front is feasible.
+    feasible: bool,
+    /// Whether the knee works on the laboratory's simulated robots.
+    works: bool,
+    /// What the user should hear.
+    notices: Vec<String>,
+}
+
+/// Everything that a run is made from.
+struct Order {
+    scenario: scenario::Scenario,
+    settings: Settings,
+    scale: f32,
+    lab: Laboratory,
+    out: PathBuf,
+    resume: bool,
+}
+
+/// What the searching thread brings back.
+struct Brought {
+    knee: grn_core::blob::Blob,
+    feasible: bool,
+    works: bool,
+    notices: Vec<String>,
+}
+
+/// Why there is nothing to bring back.
+enum Ended {
+    /// It was asked to stop.
+    Stopped,
+    /// It failed, in words.
+    Failed(PyErr),
+}
+
+impl<E: std::error::Error + 'static> From<E> for Ended {
+    fn from(error: E) -> Self {
+        Ended::Failed(failed(&error))
+    }
+}
+
+/// Evolves controllers for a scenario into a folder, and simulates the knee.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, out, evaluations, seed, objectives, motifs, scale, lab, set, threads, resume, progress))]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword of its own in Python")]
+pub fn evolve(
+    py: Python<'_>,
+    scenario: GivenScenario<'_>,
+    out: PathBuf,
+    evaluations: usize,
+    seed: u64,
+    objectives: Vec<String>,
+    motifs: &str,
+    scale: f32,
+    lab: String,
+    set: Vec<String>,
+    threads: usize,
+    resume: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Found> {
+    let scenario = scenario.get()?;
+    let objectives = Objectives::try_from(objectives).map_err(about("objectives"))?;
+    let motifs = match motifs {
+        "all" => MotifSet::All,
+        "binary" => MotifSet::Binary,
+        other => return Err(refused(format_args!("motifs = {other:?}: all or binary is needed"))),
+    };
+    let settings = Settings { seed, evaluations, motifs, objectives, ..Settings::default() };
+    let order = Order { scenario, settings, scale, lab: found(&lab, &set)?, out, resume };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(about("threads"))?;
+    let tell =
+        |py: Python<'_>, told: Progress| progress.as_ref().map_or(Ok(()), |call| call.call1(py, (told,)).map(drop));
+    let ended = attended(py, tell, |stop, news| pool.install(|| order.carry_out(stop, news)))?;
+    match ended {
+        Ok(Brought { knee, feasible, works, notices }) => {
+            Ok(Found { knee: Py::new(py, Blob { inner: knee })?, feasible, works, notices })
+        }
+        Err(Ended::Failed(error)) => Err(error),
+        Err(Ended::Stopped) => Err(refused("interrupted")),
+    }
+}
+
+impl Order {
+    /// Does what `grn evolve` does: checks everything, takes the folder, searches, writes, simulates the knee.
+    fn carry_out(&self, stop: &AtomicBool, news: &Sender<Progress>) -> Result<Brought, Ended> {
+        let Order { scenario, settings, scale, lab, out, resume } = self;
+        let config = usual_config(*scale, lab.clone());
+        swarm::check(scenario, &config)?;
+        check_length(scenario, &config)?;
+        let manifest = Manifest::new(scenario, settings.clone(), *scale, lab.clone());
+        let world = World::new(scenario.clone());
+        Search::new(&world, settings.clone(), None)?;
+        let (mut run, state) = if *resume {
+            RunFolder::resume(out, "grn.evolve in Python", manifest, scenario)?
+        } else {
+            (RunFolder::create(out, "grn.evolve in Python", manifest, scenario)?, None)
+        };
+        let mut notices = run.notices().to_vec();
+        let mut search = Search::new(&world, settings.clone(), state)?;
+        loop {
+            match search.advance(stop, &|_| ()) {
+                Advance::Generation => run.save(search.state())?,
+                Advance::Finished => break,
+                Advance::Interrupted => return Err(Ended::Stopped),
+            }
+            // Nobody listens any more only when the caller has gone.
+            let _ = search.state().history.last().map(|milestone| news.send(self.progress(milestone)));
+        }
+        let feasible = search.front().iter().all(|member| member.is_feasible());
+        let results = run.results(&search, &world, *scale)?;
+        let (mut contents, knee) = (results.contents, results.knee);
+        notices.extend(results.not_drawn);
+        run.add(&contents)?;
+        let mut works = false;
+        if feasible {
+            let watch =
+                |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+            let mut recorder = record::recorder(scenario, &config);
+            let simulation = simulation::simulate(&knee, scenario, config, NumberType::F32, &mut recorder, watch)?;
+            let simulation = simulation.ok_or(Ended::Stopped)?;
+            works = simulation.verdict().works();
+            let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), scenario, &knee);
+            notices.extend(not_drawn);
+            contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
+        }
+        run.finish(&contents)?;
+        Ok(Brought { knee, feasible, works, notices })
+    }
+
+    fn progress(&self, milestone: &Milestone) -> Progress {
+        let &Milestone { evaluations, best_f2, feasible, front, hypervolume } = milestone;
+        Progress { evaluations, budget: self.settings.evaluations, best_f2, feasible, front, hypervolume }
+    }
+}

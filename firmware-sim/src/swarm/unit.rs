@@ -3,6 +3,7 @@
 use crate::body::{BodyParameters, Drive, Pose};
 use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
+use crate::far_sense::{Eye, FarSense, Seen};
 use crate::geometry::{Walls, length_squared};
 use crate::grid::{Grid, WallIndex};
 use crate::lab::Laboratory;
@@ -10,7 +11,6 @@ use crate::localisation::{PoseError, Track, Tracker};
 use crate::proximity::{ALL_FREE, Gains, ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::{Ether, Letter, Obstruction, Receiver};
 use crate::random::{Component, Stream};
-use crate::sensors::{Eye, FarSense, Seen};
 use crate::timing::{Clock, FRAME_US};
 use grn_core::geometry::Point;
 use grn_core::robot::Percept;

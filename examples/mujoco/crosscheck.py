@@ -121,7 +121,7 @@ def document(rows: list[dict[str, Any]], seeds: int, time_taken: dict[str, float
         f"`scenarios/channel.toml` at scale 0.25 and {SPEED} m/s: in MuJoCo, as rigid bodies on wheels with friction and contacts",
         "([examples/mujoco](../examples/mujoco)), and in `grn simulate`. Both start from the same poses and take their",
         "disturbances from the same laboratory's numbers, each with code and random numbers of its own, and both are measured with",
-        f"the same ruler. Seeds 1 to {seeds} each; `encircled` is the mean over seeds, `error` the median over seeds of the median radial error",
+        f"the same ruler. {'Seed 1' if seeds == 1 else f'Seeds 1 to {seeds}'} each; `encircled` is the mean over seeds, `error` the median over seeds of the median radial error",
         "as a share of the ring's radius.",
         "",
         f"They agree where `encircled` is within {ENCIRCLED_POINTS * 100:.0f} points, `error` within {ERROR_SHARE:.0%} or {ERROR_OF_RING:.0%} of the ring, and the",

@@ -15,7 +15,7 @@
 //! | [`bursts`] | failures in rows |
 //! | [`localisation`] | a tracking system with delay, gaps, noise and drift |
 //! | [`proximity`] | the ring of proximity sensors |
-//! | [`sensors`] | the mother robots' far sense |
+//! | [`far_sense`] | the mother robots' far sense |
 //! | [`radio`] | broadcasts with range, delay and loss |
 //! | [`contacts`] | collisions, resolved and counted |
 //! | [`brain`] | what drives a robot |
@@ -35,6 +35,7 @@ pub mod bursts;
 pub mod config;
 pub mod contacts;
 pub mod faults;
+pub mod far_sense;
 pub mod flash;
 pub mod geometry;
 pub mod grid;
@@ -46,10 +47,10 @@ pub mod proximity;
 pub mod radio;
 pub mod random;
 pub mod scenario;
-pub mod sensors;
 pub mod swarm;
 pub mod timing;
 pub mod trace;
+mod units;
 
 pub use brain::{Brain, BrainError};
 pub use config::SwarmConfig;

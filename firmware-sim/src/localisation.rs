@@ -12,7 +12,7 @@ use crate::body::Pose;
 use crate::bursts::Bursts;
 use crate::lab;
 use crate::random::{Component, Stream};
-use crate::sensors::{micrometres, unit_q14};
+use crate::units::{micrometres, unit_q14};
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::Fix;
 use std::collections::VecDeque;

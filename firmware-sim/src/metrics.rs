@@ -95,12 +95,12 @@ pub struct Metrics {
 
 /// Entropy of the gaps over that of equal ones, in [0, 1]; `None` with fewer than two bearings.
 fn evenness(bearings: &Bearings) -> Option<f64> {
-    if bearings.len() < 2 {
+    if bearings.count() < 2 {
         return None;
     }
     let shares = bearings.gaps().map(|gap| gap / TAU);
     let entropy: f64 = shares.map(|share| -share * libm::log(share)).sum();
-    Some((entropy / libm::log(bearings.len() as f64)).clamp(0.0, 1.0))
+    Some((entropy / libm::log(bearings.count() as f64)).clamp(0.0, 1.0))
 }
 
 /// Is the largest gap, radians, small enough to encircle? Exactly 90° is not; positions are rounded to micrometres, so
@@ -108,6 +108,12 @@ fn evenness(bearings: &Bearings) -> Option<f64> {
 pub fn encircles(largest_gap: f64) -> bool {
     largest_gap < MAX_GAP_DEG * PI / 180.0 - 1e-9
 }
+
+/// What gives the distance (metres) of a position from the pattern that belongs to these targets' positions, or `None` where
+/// it is not known.
+pub trait PatternDistance: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64> {}
+
+impl<F: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> PatternDistance for F {}
 
 /// Measures a run while it is observed.
 pub struct Meter<'a, D> {

@@ -6,11 +6,10 @@
 
 use crate::body::Pose;
 use crate::geometry::Edge;
-use crate::lab;
+use crate::lab::{self, Response};
 use crate::random::{Component, Stream};
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_RANGE, PROXIMITY_SENSORS};
-use serde::{Deserialize, Serialize};
 
 /// Free distances in front of the eight sensors, from the body's edge, metres; infinite when nothing is met.
 pub type FreeDistances = [f64; PROXIMITY_SENSORS];
@@ -22,20 +21,6 @@ pub const ALL_FREE: FreeDistances = [f64::INFINITY; PROXIMITY_SENSORS];
 pub const WALL_REACH: f64 = BODY_RADIUS + PROXIMITY_RANGE;
 /// From farther than this between centres no sensor can reach the other robot, metres.
 pub const ROBOT_REACH: f64 = 2.0 * BODY_RADIUS + PROXIMITY_RANGE;
-
-/// What a sensor returns for a distance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Response {
-    /// The distance itself.
-    Distance,
-    /// The table of Webots' e-puck, with its noise, rounded to whole counts.
-    Webots,
-    /// The polynomial of ARGoS' e-puck2, 197.9 d² - 30.5 d + 1.01 with d in metres, where it falls; no noise.
-    Argos,
-    /// Enki's e-puck, 3731 (c - x₀²) / (x² - 2 x₀ x + c) with x in centimetres, x₀ = 0.3 and c = 0.7; noise 10, rounded.
-    Enki,
-}
 
 /// Distance in metres, signal, and noise as a share of the signal: the lookup table of Webots' e-puck.
 const WEBOTS: [(f64, f64, f64); 10] = [
@@ -57,8 +42,15 @@ const ENKI: [f64; 3] = [3731.0, 0.3, 0.7];
 /// Standard deviation of Enki's signal.
 const ENKI_NOISE: f64 = 10.0;
 
-impl Response {
+/// How a response is computed.
+trait Curve {
     /// Signal and its standard deviation for a distance in metres, at most 7 cm.
+    fn signal(self, distance: f64) -> (f64, f64);
+    /// The distance in metres that nominally gives this signal, 0 or more.
+    fn distance(self, signal: f64) -> f64;
+}
+
+impl Curve for Response {
     fn signal(self, distance: f64) -> (f64, f64) {
         match self {
             Response::Distance => (distance, 0.0),
@@ -78,7 +70,6 @@ impl Response {
         }
     }
 
-    /// The distance in metres that nominally gives this signal, 0 or more.
     fn distance(self, signal: f64) -> f64 {
         match self {
             Response::Distance => signal.max(0.0),

@@ -6,7 +6,7 @@ use firmware_sim::config::SwarmConfig;
 use firmware_sim::faults::{Absences, FaultPlan};
 use firmware_sim::geometry::Walls;
 use firmware_sim::lab::Laboratory;
-use firmware_sim::metrics::{Meter, Metrics, MetricsOptions};
+use firmware_sim::metrics::{Meter, Metrics, MetricsOptions, PatternDistance};
 use firmware_sim::scenario::Scenario;
 use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
 use firmware_sim::trace::Observer;
@@ -222,7 +222,7 @@ pub fn meter<'a>(
     ruler: &'a PatternRuler<'_>,
     marks: &'a Marks,
     ticks_per_second: u16,
-) -> Meter<'a, impl FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> {
+) -> Meter<'a, impl PatternDistance> {
     let options = MetricsOptions {
         walls: &marks.walls,
         ring_radius_m: ruler.ring_radius(),

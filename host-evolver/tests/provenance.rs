@@ -23,8 +23,9 @@ fn metrics_name_version_commit_blob_number_type_and_every_condition() -> Outcome
     assert!(version.contains('('), "no commit: {version}");
     assert_eq!((written["blob"].as_str(), written["number"].as_str()), (Some("7c883eab055a7ee8"), Some("q8.24")));
     assert_eq!(written["swarm"]["target_speed_m_per_s"].as_f64(), Some(0.1));
-    for (table, key) in [("radio", "range_m"), ("radio", "loss"), ("noise", "position_m"), ("noise", "heading_deg")] {
-        assert!(written["swarm"][table][key].is_number(), "{table}.{key}");
+    let keys = [("radio", "range_m"), ("radio", "loss"), ("localisation", "noise_m"), ("timing", "tick_s")];
+    for (table, key) in keys {
+        assert!(written["swarm"]["lab"][table][key].is_number(), "{table}.{key}");
     }
     Ok(())
 }

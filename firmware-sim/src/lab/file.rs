@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(set(" radio.loss = 1 ").unwrap().radio.loss, 1.0);
         assert_eq!(set("robots.count=7").unwrap().robots.count, 7);
         assert!(!set("timing.in_phase=false").unwrap().timing.in_phase);
-        assert_eq!(set("proximity.response=webots").unwrap().proximity.response, crate::proximity::Response::Webots);
+        assert_eq!(set("proximity.response=webots").unwrap().proximity.response, crate::lab::Response::Webots);
         for (assignment, expected) in [
             ("radio.loss=1.5", "radio.loss = 1.5: must be a number from 0 to 1"),
             ("radio.lost=0.5", "radio.lost: unknown key; did you mean radio.loss?"),

@@ -20,7 +20,6 @@ pub use packets::{MOST_PACKETS, packets};
 pub use reality::{RealitySpread, run_seed};
 pub use shipped::Shipped;
 
-use crate::proximity::Response;
 use serde::{Deserialize, Serialize};
 
 /// The most robots in a swarm.
@@ -154,6 +153,20 @@ pub struct Proximity {
     pub gain: f64,
     /// Bearings of the sensors from the heading, degrees, left positive.
     pub bearings_deg: [f64; grn_core::robot::epuck2::PROXIMITY_SENSORS],
+}
+
+/// What a sensor returns for a distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Response {
+    /// The distance itself.
+    Distance,
+    /// The table of Webots' e-puck, with its noise, rounded to whole counts.
+    Webots,
+    /// The polynomial of ARGoS' e-puck2, 197.9 d² - 30.5 d + 1.01 with d in metres, where it falls; no noise.
+    Argos,
+    /// Enki's e-puck, 3731 (c - x₀²) / (x² - 2 x₀ x + c) with x in centimetres, x₀ = 0.3 and c = 0.7; noise 10, rounded.
+    Enki,
 }
 
 /// `[wheels]`: how wheels turn commands into motion.

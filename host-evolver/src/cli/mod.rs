@@ -155,7 +155,8 @@ mod tests {
 
     /// Options whose values are words, names or paths. Every other one takes numbers, which may have a minus sign: what is
     /// wrong with them is then told with their range, and not that there is no option `-1`.
-    const WORDS: [&str; 9] = ["image", "merge", "motifs", "number", "objectives", "out", "programmer", "target", "to"];
+    const WORDS: [&str; 11] =
+        ["image", "lab", "merge", "motifs", "number", "objectives", "out", "programmer", "set", "target", "to"];
 
     #[test]
     fn every_option_with_a_number_takes_a_minus_sign() {
@@ -167,7 +168,7 @@ mod tests {
                     let name = option.get_long().unwrap_or_default();
                     option.is_allow_hyphen_values_set() == WORDS.contains(&name)
                 });
-                wrong.map(|option| format!("{} {option}", command.get_name())).collect::<Vec<_>>()
+                wrong.map(|option| format!("{} {}", command.get_name(), option.get_id())).collect::<Vec<_>>()
             })
             .collect();
         assert!(forgotten.is_empty(), "{forgotten:?}");

@@ -1,29 +1,13 @@
-//! What mother robots see far away, and metres in the units of percepts.
+//! What mother robots see far away.
 
 use crate::geometry::length_squared;
 use crate::localisation::PoseError;
 use crate::random::Stream;
+use crate::units::rounded;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS};
 use grn_core::robot::{Millimetres, Sighting};
 use heapless::Vec;
-
-/// The nearest whole number, halves up, for values that fit; ⌊value + 1/2⌋ without a call to `floor`.
-fn rounded(value: f64) -> i32 {
-    let above = value + 0.5;
-    let whole = above as i32;
-    whole - i32::from(f64::from(whole) > above)
-}
-
-/// A coordinate in metres as the nearest micrometre.
-pub(crate) fn micrometres(metres: f64) -> i32 {
-    rounded(metres * 1e6)
-}
-
-/// A component of a unit vector in units of 2^-14, as the nearest whole number.
-pub(crate) fn unit_q14(component: f64) -> i16 {
-    rounded(component * 16384.0) as i16
-}
 
 /// What a robot sees with its own far sense in one tick.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

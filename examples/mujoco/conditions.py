@@ -23,7 +23,9 @@ NOISE_LIMIT = 3.5
 
 def known(lab: Lab) -> None:
     """Refuses what is not rebuilt here."""
-    if lab.get("faults"):
+    faults = lab.get("faults", {})
+    rates = [rate for key, rate in faults.items() if key.endswith("_per_hour")]
+    if faults.get("at") or any(rates):
         raise SystemExit(f"laboratory {lab['name']}: faults are not rebuilt in MuJoCo; take one without")
     if lab["proximity"]["response"] != "distance":
         print(f"note: proximity readings are taken as distances, not through the curve of {lab['proximity']['response']}")

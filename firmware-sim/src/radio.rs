@@ -43,7 +43,6 @@ pub struct Ether {
 /// The broadcasts whose last packet was sent in one frame.
 #[derive(Debug)]
 struct Sent {
-    frame: u64,
     senders: Vec<u16>,
     /// By robot number; only those of `senders` are of this frame.
     letters: Vec<(Letter, u8)>,
@@ -78,12 +77,8 @@ impl Ether {
         let latency_frames = frames_in(radio.latency_s);
         let kept = latency_frames + MOST_OFFERED + MOST_PACKETS as u64 + 1;
         let reach = radio.range_m * (1.0 + MOST_DEVIATIONS * radio.range_noise);
-        let sent = |_| Sent {
-            frame: u64::MAX,
-            senders: Vec::new(),
-            letters: vec![(Letter::BLANK, 0); robots],
-            grid: Grid::new(reach, robots),
-        };
+        let sent =
+            |_| Sent { senders: Vec::new(), letters: vec![(Letter::BLANK, 0); robots], grid: Grid::new(reach, robots) };
         let loss = if radio.burst_s > 0.0 { 0.0 } else { radio.loss };
         let mut arrived = 1.0;
         let lost_below = [(); MOST_PACKETS].map(|()| {
@@ -120,16 +115,9 @@ impl Ether {
             let Sent { senders, grid, .. } = &mut self.frames[slot];
             grid.rebuild(senders.iter().map(|&sender| (sender, positions[usize::from(sender)])));
         }
-        // The slot of the last frame in which a message that is sent now can end.
-        let last = frame + MOST_PACKETS as u64 - 1;
-        let slot = self.slot(last);
-        let begun = if frame == 0 { 0..=last } else { last..=last };
-        begun.for_each(|frame| {
-            let slot = self.slot(frame);
-            self.frames[slot].frame = frame;
-            self.frames[slot].senders.clear();
-        });
-        debug_assert_eq!(self.frames[slot].frame, last);
+        // The last frame in which a message that is sent now can end; its place still holds an old frame's.
+        let last = self.slot(frame + MOST_PACKETS as u64 - 1);
+        self.frames[last].senders.clear();
     }
 
     /// What `sender` broadcasts in this frame.

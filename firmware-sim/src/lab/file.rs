@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 /// The laboratory that a file based on another one names, in the file.
 const BASE: &str = "base";
+const UNWRITABLE: &str = "a laboratory has text, numbers and tables only, which TOML holds";
 
 /// The laboratory of this name, or in this file: a word without a dot or slash is a name.
 ///
@@ -76,7 +77,10 @@ pub fn set(laboratory: Laboratory, assignment: &str) -> Result<Laboratory, Input
 
 /// A laboratory as a file holds it, every value written out.
 pub fn write(laboratory: &Laboratory) -> String {
-    toml::to_string(laboratory).unwrap_or_default()
+    match toml::to_string(laboratory) {
+        Ok(text) => text,
+        Err(error) => unreachable!("{UNWRITABLE}: {error}"),
+    }
 }
 
 /// The value of a key with dots.
@@ -88,7 +92,10 @@ fn entry<'t>(table: &'t mut Table, key: &str) -> Option<&'t mut Value> {
 }
 
 fn table(laboratory: &Laboratory) -> Table {
-    Table::try_from(laboratory).unwrap_or_default()
+    match Table::try_from(laboratory) {
+        Ok(table) => table,
+        Err(error) => unreachable!("{UNWRITABLE}: {error}"),
+    }
 }
 
 fn merge(base: &mut Table, own: Table) {

@@ -36,7 +36,7 @@ pub struct Laboratory {
     pub base: Option<String>,
     /// The swarm.
     pub robots: Robots,
-    /// What is in the way besides walls and robots.
+    /// What proximity sensors feel besides walls and robots.
     pub bodies: Bodies,
     /// How robots learn where they are.
     pub localisation: Localisation,
@@ -66,11 +66,12 @@ pub struct Robots {
     pub mothers: usize,
 }
 
-/// `[bodies]`: what is in the way besides walls and robots.
+/// `[bodies]`: what proximity sensors feel besides walls and robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bodies {
-    /// Radius of a target, metres; 0 if targets are only places.
+    /// Radius of a target as proximity sensors feel it, metres; 0 if targets are only places. It stops nobody: a robot that does not
+    /// keep away drives through.
     pub target_radius_m: f64,
 }
 

@@ -54,11 +54,14 @@ impl Shipped {
         }
     }
 
-    /// The laboratory. A test reads every file that is shipped.
+    /// The laboratory.
     pub fn laboratory(self) -> Laboratory {
         match self {
             Shipped::Ideal => Laboratory::default(),
-            Shipped::Tracked | Shipped::Onboard | Shipped::Hostile => parse(self.text()).unwrap_or_default(),
+            Shipped::Tracked | Shipped::Onboard | Shipped::Hostile => match parse(self.text()) {
+                Ok(laboratory) => laboratory,
+                Err(error) => unreachable!("{}: {error}; a test reads every file that is shipped", self.name()),
+            },
         }
     }
 }

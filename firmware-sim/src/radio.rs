@@ -178,8 +178,12 @@ impl Ether {
             let (sender, frame) = ((rank & 0xffff) as usize, last - (rank >> 16 & 0xf));
             let (letter, _) = &self.frames[self.slot(frame)].letters[sender];
             let age_ms = ((now_us.saturating_sub(letter.sent_us) + 500) / 1000).min(u64::from(u16::MAX)) as u16;
-            if let Some(message) = self.received(letter.message(), receiver.robot, frame) {
-                // As many as fit were chosen.
+            // As many as fit were chosen.
+            let _ = heard.push(Heard { message: letter.message(), age_ms });
+            if self.radio.corruption > 0.0
+                && let Some(sound) = heard.pop()
+                && let Some(message) = self.received(sound.message, receiver.robot, frame)
+            {
                 let _ = heard.push(Heard { message, age_ms });
             }
         }
@@ -260,9 +264,6 @@ impl Ether {
 
     /// The message as it arrives.
     fn received(&self, message: Message, receiver: u16, frame: u64) -> Option<Message> {
-        if self.radio.corruption <= 0.0 {
-            return Some(message);
-        }
         let draws = DrawSeries::new(self.seed, Component::Corruption, usize::from(receiver)).at(frame);
         let sender = u32::from(message.sender);
         if f64::from(draws.at(sender)) >= self.radio.corruption * 4_294_967_296.0 {

@@ -15,15 +15,14 @@ mod unit;
 use crate::body::Pose;
 use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
-use crate::contacts::{ContactCounts, Contacts};
+use crate::contacts::{ContactCounts, Contacts, Solid};
 use crate::faults::{Fault, FaultPlan};
-use crate::geometry::Walls;
 use crate::grid::{Grid, WallIndex};
 use crate::lab::FaultKind;
 use crate::localisation::Tracker;
 use crate::proximity::{ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::Ether;
-use crate::scenario::{PERCEPTION_RANGE, Scenario};
+use crate::scenario::{Course, OBSTACLE_SPACING, PERCEPTION_RANGE, Scenario, Scene};
 use crate::trace::{Frame, Observer, RobotState};
 use crate::units::{micrometres, unit_q14};
 use core::fmt;
@@ -87,7 +86,12 @@ const CROWD_PART: usize = 64;
 pub struct Swarm<B> {
     config: SwarmConfig,
     world: Scenario,
+    course: Course,
+    /// Targets and walls at the present moment.
+    scene: Scene,
+    /// Places on the outlines of walls that mothers may see: those of fixed walls, then those of others at the present moment.
     samples: Vec<Point<f64>>,
+    fixed_samples: usize,
     wall_index: WallIndex,
     tracker: Tracker,
     ring: ProximityRing,
@@ -99,7 +103,6 @@ pub struct Swarm<B> {
     grid: Grid,
     ether: Ether,
     contacts: Contacts,
-    targets: Vec<Point<f64>>,
     tick: u64,
     faults: FaultPlan,
     /// Who is carried away when, the next one last.
@@ -110,7 +113,7 @@ pub struct Swarm<B> {
 /// The present moment as observers see it.
 #[derive(Default)]
 struct Recorded {
-    targets_um: Vec<[i32; 2]>,
+    targets_um: Vec<Option<[i32; 2]>>,
     robots: Vec<RobotState>,
     contacts: ContactCounts,
 }
@@ -131,19 +134,17 @@ pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError
     set_up(scenario, config).map(|_| ())
 }
 
-/// Ticks until all targets of a world in real metres have arrived.
-fn arrival_tick(world: &Scenario, config: &SwarmConfig) -> u64 {
-    let travel_s = world.longest_path() / config.target_speed_m_per_s;
-    ((config.settle_s + travel_s) * f64::from(TICKS_PER_SECOND)).ceil() as u64
+/// Ticks until the world has taken its course.
+fn arrival_tick(course: &Course) -> u64 {
+    (course.end_s() * f64::from(TICKS_PER_SECOND)).ceil() as u64
 }
 
 /// The world in real metres, where the robots start, and what goes wrong until the targets have arrived.
 fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>, FaultPlan), InputError> {
     config.check()?;
     let world = scenario.scaled(config.scale);
-    let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
-    let extent = world.paths().iter().flat_map(|path| path.points().iter().copied()).chain(walls);
-    let farthest = extent.fold(world.region()[0].max(world.region()[1]), |far, p| far.max(p.x.abs()).max(p.y.abs()));
+    let extent = world.extent();
+    let farthest = [extent.low, extent.high].into_iter().fold(0.0, |far: f64, p| far.max(p.x.abs()).max(p.y.abs()));
     let reach = MAX_COORDINATE - 1.0;
     if farthest > reach {
         let most = config.scale * reach / farthest;
@@ -160,7 +161,7 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
         );
         InputError::new("robots", robots, way_out)
     })?;
-    let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&world, config))?;
+    let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&Course::of(&world, config)))?;
     Ok((world, poses, faults))
 }
 
@@ -179,13 +180,18 @@ impl<B: Brain> Swarm<B> {
         let (world, poses, faults) = set_up(scenario, &config)?;
         let lab = &config.lab;
         let n = lab.robots.count;
-        let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
+        let samples = scenario.fixed_walls().boundary_samples(OBSTACLE_SPACING);
+        let samples: Vec<Point<f64>> = samples.into_iter().map(|p| p * config.scale).collect();
+        let scene = Scene::of(&world, 0.0);
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
         let unit = |(robot, faults)| Unit::new(robot, brain(robot), &config, faults, &tracker, &ether, samples.len());
         let units = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
         let mut swarm = Swarm {
-            wall_index: WallIndex::new(world.walls(), WALL_REACH),
+            wall_index: WallIndex::new(scene.walls(), WALL_REACH),
+            course: Course::of(&world, &config),
+            scene,
+            fixed_samples: samples.len(),
             ring: ProximityRing::new(&lab.proximity),
             units,
             positions: poses.iter().map(|pose| pose.position).collect(),
@@ -197,7 +203,6 @@ impl<B: Brain> Swarm<B> {
             grid: Grid::new(ROBOT_REACH, n),
             ether,
             contacts: Contacts::new(n),
-            targets: world.targets_at(0.0),
             tick: 0,
             carried: faults.faults().iter().filter(|fault| fault.kind == FaultKind::Carried).rev().copied().collect(),
             faults,
@@ -205,6 +210,7 @@ impl<B: Brain> Swarm<B> {
             world,
             config,
         };
+        swarm.sample_moving_walls();
         swarm.record(ContactCounts::default());
         Ok(swarm)
     }
@@ -219,9 +225,14 @@ impl<B: Brain> Swarm<B> {
         &self.world
     }
 
-    /// The walls in real metres.
-    pub fn walls(&self) -> &Walls {
-        self.world.walls()
+    /// Targets and walls as they are now, in real metres.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// When in the run the world is at which time.
+    pub fn course(&self) -> &Course {
+        &self.course
     }
 
     /// Frames simulated so far.
@@ -239,11 +250,6 @@ impl<B: Brain> Swarm<B> {
         &self.poses
     }
 
-    /// Where targets are now.
-    pub fn targets(&self) -> &[Point<f64>] {
-        &self.targets
-    }
-
     /// The brains, by robot number.
     pub fn brains(&self) -> impl ExactSizeIterator<Item = &B> {
         self.units.iter().map(|unit| &unit.brain)
@@ -257,11 +263,7 @@ impl<B: Brain> Swarm<B> {
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
     pub fn arrival_tick(&self) -> u64 {
-        arrival_tick(&self.world, &self.config)
-    }
-
-    fn travel_s(&self) -> f64 {
-        self.world.longest_path() / self.config.target_speed_m_per_s
+        arrival_tick(&self.course)
     }
 
     /// Simulates up to the tick `end`. `observer` sees the start, if nothing has been simulated yet, and the world after
@@ -307,12 +309,18 @@ impl<B: Brain> Swarm<B> {
             }
             self.near.extend(unit.near.iter().filter(|&&other| robot < other).map(|&other| (robot, other)));
         }
-        let counts = self.contacts.resolve(&mut self.poses, &self.near, self.world.walls(), &self.wall_index);
+        let solid = Solid {
+            walls: self.scene.walls(),
+            index: &self.wall_index,
+            targets: self.scene.targets(),
+            target_radius: self.config.lab.bodies.target_radius_m,
+        };
+        let counts = self.contacts.resolve(&mut self.poses, &self.near, &solid);
         for (position, pose) in self.positions.iter_mut().zip(&self.poses) {
             *position = pose.position;
         }
         self.tick += 1;
-        self.move_targets();
+        self.move_world();
         self.record(counts);
         Ok(())
     }
@@ -320,7 +328,13 @@ impl<B: Brain> Swarm<B> {
     fn carry_away(&mut self) {
         while let Some(fault) = self.carried.pop_if(|next| next.from <= self.tick) {
             let robot = fault.robot;
-            let pose = placement::carried(&self.world, &self.poses, self.poses[robot], &mut fault.stream());
+            let pose = placement::carried(
+                &self.world,
+                self.scene.walls(),
+                &self.poses,
+                self.poses[robot],
+                &mut fault.stream(),
+            );
             self.poses[robot] = pose;
             self.positions[robot] = pose.position;
         }
@@ -331,11 +345,10 @@ impl<B: Brain> Swarm<B> {
             lab: &self.config.lab,
             frame: self.tick,
             positions: &self.positions,
-            targets: &self.targets,
+            scene: &self.scene,
             samples: &self.samples,
             sight_m: PERCEPTION_RANGE * self.config.scale,
             grid: &self.grid,
-            walls: self.world.walls(),
             wall_index: &self.wall_index,
             tracker: &self.tracker,
             ring: &self.ring,
@@ -352,12 +365,19 @@ impl<B: Brain> Swarm<B> {
         robots.filter_map(|robot| one(robot).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
     }
 
-    fn move_targets(&mut self) {
-        let travelled = self.tick as f64 / f64::from(TICKS_PER_SECOND) - self.config.settle_s;
-        let fraction = if travelled > 0.0 { travelled / self.travel_s() } else { 0.0 };
-        for (target, path) in self.targets.iter_mut().zip(self.world.paths()) {
-            *target = path.at(fraction);
+    /// Targets and walls as they are in this frame.
+    fn move_world(&mut self) {
+        self.scene.move_to(&self.world, self.course.time_at(self.tick as f64 / f64::from(TICKS_PER_SECOND)));
+        if self.world.walls_change() {
+            self.wall_index.set_moving(self.scene.walls());
+            self.sample_moving_walls();
         }
+    }
+
+    fn sample_moving_walls(&mut self) {
+        let spacing = OBSTACLE_SPACING * self.config.scale;
+        self.samples.truncate(self.fixed_samples);
+        self.samples.extend(self.scene.walls().moving().iter().flat_map(|wall| wall.boundary_samples(spacing)));
     }
 
     fn record(&mut self, contacts: ContactCounts) {
@@ -368,7 +388,7 @@ impl<B: Brain> Swarm<B> {
             wheels: unit.wheels,
         });
         self.recorded.targets_um.clear();
-        self.recorded.targets_um.extend(self.targets.iter().map(|&target| um(target)));
+        self.recorded.targets_um.extend(self.scene.targets().iter().map(|target| target.map(um)));
         self.recorded.robots.clear();
         self.recorded.robots.extend(robots);
         self.recorded.contacts = contacts;

@@ -3,6 +3,10 @@
 //! A sensor looks radially outwards, along its bearing, from the body's edge. An infrared sensor returns a signal that falls with the
 //! distance; the robot turns it back into a distance by the sensor's nominal curve. So an error of the signal, or a gain that is not
 //! nominal, becomes an error of the distance that is larger where the curve is flat, far away.
+//!
+//! A sensor with an aperture a has two more rays, a to the right and to the left of its bearing. Enki (`IRSensor.h`, 2016) adds up
+//! the signals F of the three: F(middle) + F(right) + F(left) - 2 F(middle / cos a), so that a wall straight ahead gives F(middle).
+//! A ray that meets nothing within reach has no signal. What only the middle ray meets, a post, weakens the sum to nothing.
 
 use crate::body::Pose;
 use crate::geometry::Edge;
@@ -11,11 +15,14 @@ use crate::random::{Component, Stream};
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{BODY_RADIUS, PROXIMITY_RANGE, PROXIMITY_SENSORS};
 
-/// Free distances in front of the eight sensors, from the body's edge, metres; infinite when nothing is met.
-pub type FreeDistances = [f64; PROXIMITY_SENSORS];
+/// The most rays of a sensor: the middle one, then those to its right and left.
+const RAYS: usize = 3;
+
+/// Free distances in front of the eight sensors, from the body's edge, metres, for each ray; infinite when nothing is met.
+pub type FreeDistances = [[f64; PROXIMITY_SENSORS]; RAYS];
 
 /// Nothing is met.
-pub const ALL_FREE: FreeDistances = [f64::INFINITY; PROXIMITY_SENSORS];
+pub const ALL_FREE: FreeDistances = [[f64::INFINITY; PROXIMITY_SENSORS]; RAYS];
 
 /// From farther than this between centre and wall no sensor can reach the wall, metres.
 pub const WALL_REACH: f64 = BODY_RADIUS + PROXIMITY_RANGE;
@@ -92,11 +99,65 @@ impl Curve for Response {
     }
 }
 
+/// One ray of every sensor.
+#[derive(Clone, Debug)]
+struct Fan {
+    cos: [f64; PROXIMITY_SENSORS],
+    sin: [f64; PROXIMITY_SENSORS],
+    /// Where the rays begin, seen from the body's centre: how far along them, and how far to their right, metres.
+    ahead: f64,
+    aside: f64,
+}
+
+impl Fan {
+    /// Rays `turn` radians to the left of these bearings.
+    fn new(bearings_deg: &[f64; PROXIMITY_SENSORS], turn: f64) -> Self {
+        let directions = bearings_deg.map(|bearing| libm::sincos(bearing.to_radians() + turn));
+        let (sin, cos) = libm::sincos(turn);
+        Fan {
+            cos: directions.map(|(_, cos)| cos),
+            sin: directions.map(|(sin, _)| sin),
+            ahead: BODY_RADIUS * cos,
+            aside: BODY_RADIUS * sin,
+        }
+    }
+
+    #[inline]
+    fn sense_body(&self, offset: Vector<f64>, radius: f64, free: &mut [f64; PROXIMITY_SENSORS]) {
+        for ((free, &cos), &sin) in free.iter_mut().zip(&self.cos).zip(&self.sin) {
+            let along = offset.x * cos + offset.y * sin;
+            let aside = offset.x * sin - offset.y * cos - self.aside;
+            let room = radius * radius - aside * aside;
+            let distance = along - (if room > 0.0 { room } else { 0.0 }).sqrt() - self.ahead;
+            // Without short circuits the eight sensors are computed side by side.
+            let met = (along > 0.0) & (room >= 0.0) & (distance < *free);
+            *free = if met { distance } else { *free };
+        }
+    }
+
+    #[inline]
+    fn sense_edge(&self, start: Vector<f64>, along: Vector<f64>, free: &mut [f64; PROXIMITY_SENSORS]) {
+        let crossed = start.cross(along);
+        for ((free, &cos), &sin) in free.iter_mut().zip(&self.cos).zip(&self.sin) {
+            // A ray parallel to the edge divides by 0 and meets nothing, because no comparison with NaN holds and an
+            // infinite distance is not shorter.
+            let sideways = self.aside * (cos * along.x + sin * along.y);
+            let per_denominator = 1.0 / (cos * along.y - sin * along.x);
+            let distance = (crossed - sideways) * per_denominator - self.ahead;
+            let share = (start.x * sin - start.y * cos - self.aside) * per_denominator;
+            let met = (distance >= -BODY_RADIUS) & (share * (1.0 - share) >= 0.0) & (distance < *free);
+            *free = if met { distance } else { *free };
+        }
+    }
+}
+
 /// The ring as it is built: where sensors look, and how they respond.
 #[derive(Clone, Debug)]
 pub struct ProximityRing {
-    cos: [f64; PROXIMITY_SENSORS],
-    sin: [f64; PROXIMITY_SENSORS],
+    /// The middle rays; with an aperture those to their right and left, too.
+    fans: Vec<Fan>,
+    /// How much farther a side ray meets a wall straight ahead than the middle one: 1 / cos a.
+    longer: f64,
     response: Response,
     noise_m: f64,
     noise_growth: f64,
@@ -123,10 +184,11 @@ fn in_body_frame(pose: &Pose, point: Point<f64>) -> Vector<f64> {
 impl ProximityRing {
     /// The ring of a laboratory's robots.
     pub fn new(proximity: &lab::Proximity) -> Self {
-        let bearings = proximity.bearings_deg.map(|bearing| libm::sincos(bearing.to_radians()));
+        let aperture = proximity.aperture_deg.to_radians();
+        let turns: &[f64] = if aperture > 0.0 { &[0.0, -aperture, aperture] } else { &[0.0] };
         ProximityRing {
-            cos: bearings.map(|(_, cos)| cos),
-            sin: bearings.map(|(sin, _)| sin),
+            fans: turns.iter().map(|&turn| Fan::new(&proximity.bearings_deg, turn)).collect(),
+            longer: 1.0 / libm::cos(aperture),
             response: proximity.response,
             noise_m: proximity.noise_m,
             noise_growth: proximity.noise_growth,
@@ -137,15 +199,7 @@ impl ProximityRing {
     #[inline]
     pub fn sense_body(&self, pose: &Pose, other: Point<f64>, radius: f64, free: &mut FreeDistances) {
         let offset = in_body_frame(pose, other);
-        for ((free, &cos), &sin) in free.iter_mut().zip(&self.cos).zip(&self.sin) {
-            let along = offset.x * cos + offset.y * sin;
-            let aside = offset.x * sin - offset.y * cos;
-            let room = radius * radius - aside * aside;
-            let distance = along - (if room > 0.0 { room } else { 0.0 }).sqrt() - BODY_RADIUS;
-            // Without short circuits the eight sensors are computed side by side.
-            let met = (along > 0.0) & (room >= 0.0) & (distance < *free);
-            *free = if met { distance } else { *free };
-        }
+        self.fans.iter().zip(free).for_each(|(fan, free)| fan.sense_body(offset, radius, free));
     }
 
     /// Shortens free distances by a wall's edge.
@@ -153,33 +207,45 @@ impl ProximityRing {
     pub fn sense_edge(&self, pose: &Pose, edge: &Edge, free: &mut FreeDistances) {
         let start = in_body_frame(pose, edge.start());
         let along = in_body_frame(pose, edge.end()) - start;
-        let crossed = start.cross(along);
-        for ((free, &cos), &sin) in free.iter_mut().zip(&self.cos).zip(&self.sin) {
-            // A ray parallel to the edge divides by 0 and meets nothing, because no comparison with NaN holds and an
-            // infinite distance is not shorter.
-            let per_denominator = 1.0 / (cos * along.y - sin * along.x);
-            let distance = crossed * per_denominator - BODY_RADIUS;
-            let share = (start.x * sin - start.y * cos) * per_denominator;
-            let met = (distance >= -BODY_RADIUS) & (share * (1.0 - share) >= 0.0) & (distance < *free);
-            *free = if met { distance } else { *free };
-        }
+        self.fans.iter().zip(free).for_each(|(fan, free)| fan.sense_edge(start, along, free));
     }
 
     /// Free distances as the percept has them, in 0.1 mm.
     pub fn readings(&self, free: &FreeDistances, gains: &Gains, noise: &mut Stream) -> [u16; PROXIMITY_SENSORS] {
         let mut readings = [u16::MAX; PROXIMITY_SENSORS];
-        for ((reading, &distance), &gain) in readings.iter_mut().zip(free).zip(&gains.0) {
-            if distance <= PROXIMITY_RANGE {
-                let sensed = self.sensed(distance.max(0.0), gain, noise);
+        for (sensor, (reading, &gain)) in readings.iter_mut().zip(&gains.0).enumerate() {
+            let rays = free.map(|free| free[sensor]);
+            let nearest = rays.into_iter().fold(f64::INFINITY, f64::min);
+            if nearest <= PROXIMITY_RANGE
+                && let Some(felt) = self.felt(rays.map(|ray| ray.max(0.0)))
+            {
+                let sensed = self.sensed(felt, nearest.max(0.0), gain, noise);
                 *reading = if sensed > PROXIMITY_RANGE { u16::MAX } else { (sensed * 1e4 + 0.5) as u16 };
             }
         }
         readings
     }
 
-    /// The distance that the robot makes of a true one, metres.
-    fn sensed(&self, distance: f64, gain: f64, noise: &mut Stream) -> f64 {
-        let (signal, deviation) = self.response.signal(distance);
+    /// Signal and its standard deviation for what a sensor's rays meet; `None` if it is too weak to be one.
+    fn felt(&self, rays: [f64; RAYS]) -> Option<(f64, f64)> {
+        let [middle, right, left] = rays;
+        if self.fans.len() == 1 {
+            return Some(self.response.signal(middle));
+        }
+        if self.response == Response::Distance {
+            return Some(self.response.signal(middle.min(right).min(left)));
+        }
+        let within_reach = |ray: f64| if ray <= PROXIMITY_RANGE { self.response.signal(ray) } else { (0.0, 0.0) };
+        let [(middle, loud), (beyond, _), (right, _), (left, _)] =
+            [middle, middle * self.longer, right, left].map(within_reach);
+        let sum = middle + right + left - 2.0 * beyond;
+        // One sensor has one noise, as loud as where the middle ray meets something or, if it does not, as for this sum.
+        let deviation = if loud > 0.0 { loud } else { self.response.signal(self.response.distance(sum)).1 };
+        (sum > 0.0).then_some((sum, deviation))
+    }
+
+    /// The distance that the robot makes of a signal from something that is so many metres away.
+    fn sensed(&self, (signal, deviation): (f64, f64), distance: f64, gain: f64, noise: &mut Stream) -> f64 {
         let signal = signal * gain + error(deviation, noise);
         let inverted = match self.response {
             Response::Distance | Response::Argos => self.response.distance(signal),

@@ -151,6 +151,8 @@ pub struct Proximity {
     pub noise_growth: f64,
     /// Gain of each sensor.
     pub gain: f64,
+    /// How far to both sides of a sensor's bearing its two other rays look, degrees; 0 for one ray.
+    pub aperture_deg: f64,
     /// Bearings of the sensors from the heading, degrees, left positive.
     pub bearings_deg: [f64; grn_core::robot::epuck2::PROXIMITY_SENSORS],
 }
@@ -269,6 +271,7 @@ impl Default for Proximity {
             noise_m: 0.001,
             noise_growth: 0.0,
             gain: 0.0,
+            aperture_deg: 0.0,
             bearings_deg: grn_core::robot::epuck2::PROXIMITY_BEARINGS_DEG.map(f64::from),
         }
     }

@@ -28,7 +28,7 @@ fn at(bearing: f64, distance: f64) -> Point<f64> {
 /// What sensor 0 makes of this distance in metres, in 0.1 mm, so many times.
 fn readings(ring: &ProximityRing, distance: f64, gains: &Gains, count: usize) -> Vec<u16> {
     let mut free = ALL_FREE;
-    free[0] = distance;
+    free[0][0] = distance;
     let mut noise = stream();
     (0..count).map(|_| ring.readings(&free, gains, &mut noise)[0]).collect()
 }
@@ -39,8 +39,8 @@ fn a_robot_straight_before_a_sensor_is_met_at_its_edge() {
     for (sensor, bearing) in PROXIMITY_BEARINGS_DEG.into_iter().enumerate() {
         let mut free = ALL_FREE;
         ring.sense_body(&POSE, at(f64::from(bearing), 0.1), BODY_RADIUS, &mut free);
-        assert!((free[sensor] - 0.03).abs() < 1e-12, "{bearing}: {free:?}");
-        assert!(free.iter().enumerate().all(|(other, &f)| other == sensor || f > 0.03), "{bearing}: {free:?}");
+        assert!((free[0][sensor] - 0.03).abs() < 1e-12, "{bearing}: {free:?}");
+        assert!(free[0].iter().enumerate().all(|(other, &f)| other == sensor || f > 0.03), "{bearing}: {free:?}");
     }
 }
 
@@ -52,8 +52,8 @@ fn a_robot_off_the_axis_is_met_on_its_flank_or_missed() {
     ring.sense_body(&POSE, at(0.0, 0.09), BODY_RADIUS, &mut free);
     let (sin, cos) = libm::sincos(17f64.to_radians());
     let expected = 0.09 * cos - (0.035f64 * 0.035 - 0.09 * 0.09 * sin * sin).sqrt() - 0.035;
-    assert!((free[0] - expected).abs() < 1e-12 && (free[7] - expected).abs() < 1e-12);
-    assert!(free[1..7].iter().all(|f| f.is_infinite()));
+    assert!((free[0][0] - expected).abs() < 1e-12 && (free[0][7] - expected).abs() < 1e-12);
+    assert!(free[0][1..7].iter().all(|f| f.is_infinite()));
     // Overlapping robots give no negative reading.
     let mut free = ALL_FREE;
     ring.sense_body(&POSE, at(90.0, 0.06), BODY_RADIUS, &mut free);
@@ -68,13 +68,14 @@ fn walls_are_met_at_the_ray_s_distance() {
     let mut free = ALL_FREE;
     ring.sense_edge(&POSE, &edge, &mut free);
     let expected = |bearing: f64| 0.06 / libm::cos(bearing.to_radians()) - 0.035;
+    let [free, ..] = free;
     assert!((free[0] - expected(17.0)).abs() < 1e-12 && (free[1] - expected(50.0)).abs() < 1e-12);
     // The sensors at 90° look along the wall, those at 150° away from it.
     assert!(free[2] > 1.0 && free[3].is_infinite() && free[4].is_infinite() && free[5] > 1.0);
     // The same from the edge's other direction, and a short edge beside the rays is missed.
     let mut reversed = ALL_FREE;
     ring.sense_edge(&POSE, &Edge::new(edge.end(), edge.start()), &mut reversed);
-    assert!((reversed[0] - free[0]).abs() < 1e-15 && (reversed[6] - free[6]).abs() < 1e-15);
+    assert!((reversed[0][0] - free[0]).abs() < 1e-15 && (reversed[0][6] - free[6]).abs() < 1e-15);
     let mut missed = ALL_FREE;
     ring.sense_edge(&POSE, &Edge::new(at(-10.0, 0.06), at(10.0, 0.06)), &mut missed);
     assert_eq!(missed, ALL_FREE);
@@ -83,7 +84,7 @@ fn walls_are_met_at_the_ray_s_distance() {
 #[test]
 fn readings_are_tenths_of_millimetres_up_to_five_centimetres() {
     let mut free = ALL_FREE;
-    (free[0], free[1], free[2]) = (0.0123, 0.05, 0.0501);
+    (free[0][0], free[0][1], free[0][2]) = (0.0123, 0.05, 0.0501);
     let read = ring().readings(&free, &EVEN, &mut stream());
     assert_eq!(read, [123, 500, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX]);
     let noisy = readings(&ring_with(|p| p.noise_m = 0.001), 0.02, &EVEN, 1000);
@@ -142,4 +143,57 @@ fn infrared_is_worse_far_away() {
         let mean = strong.iter().map(|&r| f64::from(r)).sum::<f64>() / 500.0;
         assert!(mean < 297.0 && mean > 250.0, "{response:?}: {mean}");
     }
+}
+
+/// What the middle ray of sensor 0 makes of a wall across the sensor's axis, this far from its edge, in 0.1 mm.
+fn before_a_wall(ring: &ProximityRing, distance: f64) -> u16 {
+    let axis = f64::from(PROXIMITY_BEARINGS_DEG[0]);
+    let (middle, aside) = (at(axis, BODY_RADIUS + distance), at(axis + 90.0, 1.0) - POSE.position);
+    let mut free = ALL_FREE;
+    ring.sense_edge(&POSE, &Edge::new(middle - aside, middle + aside), &mut free);
+    ring.readings(&free, &EVEN, &mut stream())[0]
+}
+
+#[test]
+fn three_rays_feel_a_wall_straight_ahead_like_one() {
+    let three = ring_with(|p| (p.response, p.aperture_deg) = (Response::Argos, 15.0));
+    for distance in [0.0, 0.01, 0.02, 0.03, 0.04] {
+        let read = before_a_wall(&three, distance);
+        assert!((f64::from(read) * 1e-4 - distance).abs() < 1e-4, "{distance}: {read}");
+    }
+    assert_eq!(before_a_wall(&three, 0.051), u16::MAX);
+    // The nearest of three distances is that of the middle ray.
+    assert_eq!(before_a_wall(&ring_with(|p| p.aperture_deg = 15.0), 0.03), 300);
+}
+
+#[test]
+fn three_rays_feel_what_one_passes_by_and_miss_a_post() {
+    let argos = |aperture_deg| ring_with(|p| (p.response, p.aperture_deg) = (Response::Argos, aperture_deg));
+    let felt = |ring: &ProximityRing, centre: Point<f64>, radius: f64| {
+        let mut free = ALL_FREE;
+        ring.sense_body(&POSE, centre, radius, &mut free);
+        ring.readings(&free, &EVEN, &mut stream())[0]
+    };
+    let axis = f64::from(PROXIMITY_BEARINGS_DEG[0]);
+    let from_sensor = |turn: f64, distance: f64| {
+        let (sin, cos) = libm::sincos((axis + turn).to_radians());
+        let way = POSE.heading * cos + POSE.heading.turned_left() * sin;
+        at(axis, BODY_RADIUS) + way * distance
+    };
+    // A rod of 4 mm, 2 cm before the sensor on each ray in turn: the side rays alone have signals of their own.
+    for turn in [15.0, -15.0] {
+        let rod = from_sensor(turn, 0.022);
+        assert_eq!(felt(&argos(0.0), rod, 0.002), u16::MAX);
+        let read = felt(&argos(15.0), rod, 0.002);
+        assert!((199..=201).contains(&read), "{turn}: {read}");
+    }
+    assert_eq!(felt(&argos(0.0), from_sensor(0.0, 0.022), 0.002), 200);
+    assert_eq!(felt(&argos(15.0), from_sensor(0.0, 0.022), 0.002), u16::MAX);
+    // A wall that begins beside the ray, and a robot before the sensor.
+    let robot = from_sensor(0.0, 0.02 + BODY_RADIUS);
+    let read = felt(&argos(15.0), robot, BODY_RADIUS);
+    assert!((200..260).contains(&read), "its flanks are farther away than those of a wall: {read}");
+    let mut free = ALL_FREE;
+    argos(15.0).sense_edge(&POSE, &Edge::new(from_sensor(10.0, 0.02), from_sensor(60.0, 0.02)), &mut free);
+    assert!(free[0][0].is_infinite() && free[1][0].is_infinite() && free[2][0] < 0.02, "{free:?}");
 }

@@ -10,6 +10,7 @@ mod path;
 mod presence;
 pub mod random;
 mod scene;
+mod tables;
 mod target;
 mod things;
 mod timing;

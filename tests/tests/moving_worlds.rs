@@ -6,10 +6,13 @@ use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use host_evolver::evaluation::{Evaluator, Model, World};
+use host_evolver::evolve::{Advance, Search, Settings, deployed};
+use host_evolver::model::deploy;
 use host_evolver::model::published::PUBLISHED;
 use host_evolver::simulation::{Simulation, simulate, usual_config};
 use std::fmt::Write;
 use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
 fn shipped(name: &str) -> Scenario {
     Scenario::load(format!("{}/../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
@@ -50,21 +53,41 @@ fn f2_is_the_mean_over_the_world_as_it_is_at_each_snapshot() {
     }
 }
 
-fn run(world: &Scenario, seed: u64) -> Simulation {
-    let bytes = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../models/nand-xnor.grn")).unwrap();
-    let blob = Blob::decode(&bytes).unwrap();
+/// With three messages in ten lost.
+fn run(blob: &Blob, world: &Scenario, seed: u64, number: NumberType) -> Simulation {
     let mut config = usual_config(blob.scale, Laboratory::default());
-    config.seed = seed;
-    simulate(&blob, world, config, NumberType::F32, &mut (), |_| ControlFlow::Continue(())).unwrap().unwrap()
+    (config.seed, config.lab.radio.loss) = (seed, 0.3);
+    simulate(blob, world, config, number, &mut (), |_| ControlFlow::Continue(())).unwrap().unwrap()
+}
+
+fn holds_again(simulation: &Simulation) {
+    let (seed, recoveries) = (simulation.config.seed, &simulation.metrics.recoveries);
+    assert!(!recoveries.is_empty());
+    for recovery in recoveries {
+        assert!(recovery.encircled_share.is_some_and(|share| share > 0.9), "seed {seed}: {recovery:?}");
+    }
+    assert!(simulation.verdict().works(), "seed {seed}: {:?}", simulation.metrics);
 }
 
 #[test]
 fn when_a_target_vanishes_its_robots_join_the_others() {
-    for seed in 1..=4 {
-        let simulation = run(&shipped("moving/vanishing"), seed);
-        let metrics = &simulation.metrics;
-        let recovery = metrics.recoveries.last().unwrap();
-        assert!(recovery.encircled_share.is_some_and(|share| share > 0.9), "seed {seed}: {recovery:?}");
-        assert!(simulation.verdict().works(), "seed {seed}: {metrics:?}");
-    }
+    let bytes = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../models/nand-xnor.grn")).unwrap();
+    let blob = Blob::decode(&bytes).unwrap();
+    let world = shipped("moving/vanishing");
+    (1..=3).for_each(|seed| holds_again(&run(&blob, &world, seed, NumberType::F32)));
+    holds_again(&run(&blob, &world, 4, NumberType::Q8_24));
+}
+
+#[test]
+fn a_controller_that_evolved_among_doors_goes_through_them() {
+    let scenario = shipped("moving/doors");
+    let world = World::new(scenario.clone());
+    let settings = Settings { evaluations: 2400, ..Settings::default() };
+    let mut search = Search::new(&world, settings, None).unwrap();
+    while search.advance(&AtomicBool::new(false), &|_| {}) == Advance::Generation {}
+    let front = search.front();
+    let member = &front[deployed(&front)];
+    assert!(member.is_feasible());
+    let blob = deploy::blob(member.network.clone(), &scenario.morphogen(), 0.25);
+    (1..=3).for_each(|seed| holds_again(&run(&blob, &scenario, seed, NumberType::F32)));
 }

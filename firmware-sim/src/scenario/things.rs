@@ -1,7 +1,7 @@
 //! The targets and walls of a file, checked.
 
-use super::file::{TargetTable, WallTable};
 use super::limits::{self, MAX_POINTS, WALL_OVERHANG};
+use super::tables::{TargetTable, WallTable};
 use super::timing::{checked_motion, checked_times};
 use super::{MovingWall, Path, Presence, Target};
 use crate::geometry::{Polygon, PolygonError, Walls};

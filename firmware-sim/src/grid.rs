@@ -83,6 +83,7 @@ impl Grid {
         }
     }
 
+    #[inline]
     fn column_row(&self, position: Point<f64>) -> (usize, usize) {
         // By way of i32, to which floating-point numbers are converted in fewer instructions.
         let cell = |metres: f64, cells: usize| ((metres * self.per_cell) as i32).clamp(0, cells as i32 - 1) as usize;
@@ -97,7 +98,7 @@ impl Grid {
         let (column, row) = self.column_row(position);
         let first = column.saturating_sub(1);
         let last = (column + 1).min(self.columns - 1);
-        for row in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {
+        for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
             let from = self.starts[row * self.columns + first] as usize;
             let range = from..self.starts[row * self.columns + last + 1] as usize;
             let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);

@@ -157,7 +157,8 @@ impl<B: Brain> Unit<B> {
     }
 
     fn think(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Result<(), BrainError> {
-        let percept = self.percept(pose, around, now_us);
+        let mut percept = Percept::nothing();
+        self.perceive(pose, around, now_us, &mut percept);
         let command = self.brain.tick(&percept)?;
         self.wheels = [command.left, command.right].map(|speed| speed.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
         if let Some(message) = &command.broadcast
@@ -168,21 +169,19 @@ impl<B: Brain> Unit<B> {
         Ok(())
     }
 
-    fn percept(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Percept {
-        let Seen { targets, obstacles } = self.far(pose.position, around);
-        let obstruction = Obstruction { walls: around.scene.walls(), positions: around.positions };
-        Percept {
-            elapsed_us: self.clock.tick(),
-            fix: around.tracker.newest(&mut self.track, now_us),
-            proximity: self.proximity(pose, around),
-            targets,
-            obstacles,
-            heard: if self.ailments.now().without_radio {
-                around.ether.miss(&mut self.receiver);
-                heapless::Vec::new()
-            } else {
-                around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction)
-            },
+    /// Fills an empty percept, in its place: it is large.
+    fn perceive(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64, percept: &mut Percept) {
+        percept.elapsed_us = self.clock.tick();
+        percept.fix = around.tracker.newest(&mut self.track, now_us);
+        if self.far_sense.is_some() {
+            Seen { targets: percept.targets, obstacles: percept.obstacles } = self.far(pose.position, around);
+        }
+        percept.proximity = self.proximity(pose, around);
+        if self.ailments.now().without_radio {
+            around.ether.miss(&mut self.receiver);
+        } else {
+            let obstruction = Obstruction { walls: around.scene.walls(), positions: around.positions };
+            around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction, &mut percept.heard);
         }
     }
 

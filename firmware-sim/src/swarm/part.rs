@@ -9,6 +9,11 @@ use crate::trace::RobotState;
 
 /// How many robots a part has; the last may have fewer.
 pub(super) const PART: usize = 64;
+/// From so many robots on it pays to let several threads think for them.
+pub(super) const CROWD: usize = 256;
+
+/// A part of the swarm with its number, its robots, their poses and their states.
+pub(super) type Numbered<'a, B> = (usize, (&'a mut Part, ((&'a mut [Unit<B>], &'a mut [Pose]), &'a mut [RobotState])));
 
 /// What the robots of a part did in a frame. It lies close together in memory, where the robots of a crowd are far apart: who
 /// goes through all of them has it at hand.

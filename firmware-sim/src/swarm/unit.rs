@@ -6,13 +6,14 @@ use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
 use crate::far_sense::{Eye, FarSense, Seen};
 use crate::faults::Fault;
-use crate::geometry::{Walls, length_squared};
+use crate::geometry::length_squared;
 use crate::grid::{Grid, WallIndex};
 use crate::lab::Laboratory;
 use crate::localisation::{PoseError, Track, Tracker};
 use crate::proximity::{ALL_FREE, Gains, ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::{Ether, Letter, Obstruction, Receiver};
 use crate::random::{Component, Stream};
+use crate::scenario::Scene;
 use crate::timing::{Clock, FRAME_US};
 use grn_core::geometry::Point;
 use grn_core::robot::Percept;
@@ -24,11 +25,10 @@ pub(super) struct Surroundings<'a> {
     pub lab: &'a Laboratory,
     pub frame: u64,
     pub positions: &'a [Point<f64>],
-    pub targets: &'a [Point<f64>],
+    pub scene: &'a Scene,
     pub samples: &'a [Point<f64>],
     pub sight_m: f64,
     pub grid: &'a Grid,
-    pub walls: &'a Walls,
     pub wall_index: &'a WallIndex,
     pub tracker: &'a Tracker,
     pub ring: &'a ProximityRing,
@@ -181,7 +181,7 @@ impl<B: Brain> Unit<B> {
         if self.ailments.now().without_radio {
             around.ether.miss(&mut self.receiver);
         } else {
-            let obstruction = Obstruction { walls: around.walls, positions: around.positions };
+            let obstruction = Obstruction { walls: around.scene.walls(), positions: around.positions };
             around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction, &mut percept.heard);
         }
     }
@@ -191,7 +191,7 @@ impl<B: Brain> Unit<B> {
         let sighting = &around.lab.sighting;
         let error = if sighting.own_pose_error { self.track.error() } else { PoseError::NONE };
         let eye = Eye { position, range: around.sight_m, error, noise_m: sighting.noise_m };
-        far_sense.look(&eye, around.targets, around.samples, &mut self.noise)
+        far_sense.look(&eye, around.scene.targets(), around.samples, &mut self.noise)
     }
 
     fn proximity(&mut self, pose: &Pose, around: &Surroundings<'_>, near: &[u16]) -> [u16; PROXIMITY_SENSORS] {
@@ -206,7 +206,7 @@ impl<B: Brain> Unit<B> {
         }
         let target_radius = around.lab.bodies.target_radius_m;
         if target_radius > 0.0 {
-            for &target in around.targets {
+            for &target in around.scene.targets().iter().flatten() {
                 around.ring.sense_body(pose, target, target_radius, &mut free);
             }
         }

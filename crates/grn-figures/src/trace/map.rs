@@ -83,6 +83,11 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
             let at = view.place(*point);
             taken.add_mark(at, 1.0, 2.0);
         }
+        for wall in &instant.walls {
+            let corners: Vec<(f64, f64)> = wall.iter().map(|corner| view.place(*corner)).collect();
+            let next = corners.iter().skip(1).chain(corners.first());
+            corners.iter().zip(next).for_each(|(from, to)| taken.add_line(*from, *to, 2.0));
+        }
     }
     for instant in &figure.instants {
         time_label(svg, figure, instant, view, &mut taken);

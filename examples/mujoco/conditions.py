@@ -27,6 +27,8 @@ def known(lab: Lab) -> None:
     rates = [rate for key, rate in faults.items() if key.endswith("_per_hour")]
     if faults.get("at") or any(rates):
         raise SystemExit(f"laboratory {lab['name']}: faults are not rebuilt in MuJoCo; take one without")
+    if lab["base_station"]["sends"]:
+        raise SystemExit(f"laboratory {lab['name']}: a base station is not rebuilt in MuJoCo; take one without")
     if lab["proximity"]["aperture_deg"] > 0.0:
         print("note: a proximity sensor has one ray here, not three")
     if lab["proximity"]["response"] != "distance":

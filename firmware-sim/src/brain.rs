@@ -3,7 +3,7 @@
 use core::error::Error;
 use core::fmt;
 use grn_core::network::DEFAULT_GENES;
-use grn_core::robot::{Command, Controller, Percept};
+use grn_core::robot::{Command, Controller, Millimetres, Percept};
 use grn_core::scalar::Scalar;
 use std::sync::Arc;
 
@@ -14,6 +14,15 @@ pub trait Brain: Send {
     /// # Errors
     /// [`BrainError`] when there is no answer, such as from a remote brain whose link broke; it ends the run.
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError>;
+
+    /// The same for a robot that its base station calls home to this place.
+    ///
+    /// # Errors
+    /// [`BrainError`] if it cannot, as brains that do not say how; it ends the run.
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, BrainError> {
+        let _ = (percept, home);
+        Err(BrainError::new("this brain cannot be called home; simulate it without a base station"))
+    }
 
     /// Begins anew, as after its robot was switched off and on: it knows nothing of before.
     ///
@@ -29,6 +38,10 @@ impl<B: Brain + ?Sized> Brain for Box<B> {
         (**self).tick(percept)
     }
 
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, BrainError> {
+        (**self).tick_home(percept, home)
+    }
+
     fn reboot(&mut self) -> Result<(), BrainError> {
         (**self).reboot()
     }
@@ -38,6 +51,10 @@ impl<B: Brain + ?Sized> Brain for Box<B> {
 impl<S: Scalar, const N: usize> Brain for Controller<S, N> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         Controller::tick(self, percept).map_err(BrainError::new)
+    }
+
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, BrainError> {
+        Controller::tick_home(self, percept, home).map_err(BrainError::new)
     }
 }
 
@@ -60,6 +77,10 @@ impl<S: Scalar, const N: usize> Onboard<S, N> {
 impl<S: Scalar, const N: usize> Brain for Onboard<S, N> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         Brain::tick(&mut self.running, percept)
+    }
+
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, BrainError> {
+        Brain::tick_home(&mut self.running, percept, home)
     }
 
     fn reboot(&mut self) -> Result<(), BrainError> {

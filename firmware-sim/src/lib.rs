@@ -17,6 +17,7 @@
 //! | [`proximity`] | the ring of proximity sensors |
 //! | [`far_sense`] | the mother robots' far sense |
 //! | [`radio`] | broadcasts with range, delay and loss |
+//! | [`base_station`] | a base station that sends robots as the pattern asks |
 //! | [`contacts`] | collisions, resolved and counted |
 //! | [`brain`] | what drives a robot |
 //! | [`config`] | a run's parameters |
@@ -29,6 +30,7 @@
 //! Results are the same bits on every machine and for any number of threads: seeded, and without the platform's
 //! transcendental functions.
 
+pub mod base_station;
 pub mod body;
 pub mod brain;
 pub mod bursts;

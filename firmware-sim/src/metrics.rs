@@ -143,6 +143,8 @@ pub struct Meter<'a, D> {
     scene: Option<Scene>,
     recoveries: Vec<(u64, Forming)>,
     last_tick: u64,
+    /// Who was none of the swarm at the last moment, as the base station says.
+    off_duty: Vec<bool>,
     space: Space,
 }
 
@@ -200,6 +202,7 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Meter<'a, D> {
             clearance: Clearance::new(),
             recoveries: Vec::new(),
             last_tick: 0,
+            off_duty: Vec::new(),
             space: Space::default(),
         }
     }
@@ -283,7 +286,9 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Meter<'a, D> {
         let working = || {
             let robots = self.robots.iter().enumerate();
             let now = self.last_tick..self.last_tick + 1;
-            let present = robots.filter(move |(robot, _)| self.options.absences.none_in(*robot, now.clone()));
+            let present = robots.filter(move |(robot, _)| {
+                self.options.absences.none_in(*robot, now.clone()) && !self.off_duty.get(*robot).is_some_and(|off| *off)
+            });
             present.map(|(_, robot)| robot)
         };
         let formed_at = self.forming.formed_at();
@@ -339,7 +344,8 @@ impl<D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Observer for Meter
             self.robots.resize(frame.robots.len(), Whereabouts::default());
             let since = (frame.tick + 1).saturating_sub(self.stride);
             for (robot, (state, whereabouts)) in frame.robots.iter().zip(&mut self.robots).enumerate() {
-                if self.options.absences.none_in(robot, since..frame.tick + 1) {
+                let off_duty = frame.off_duty.get(robot).is_some_and(|off| *off);
+                if !off_duty && self.options.absences.none_in(robot, since..frame.tick + 1) {
                     robots.push((robot, metres(state.position_um)));
                 } else {
                     whereabouts.suspend();
@@ -348,6 +354,8 @@ impl<D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Observer for Meter
             self.observe_encirclement(frame.tick, frame.targets_um.len());
             self.observe_distances(frame.tick);
         }
+        self.off_duty.clear();
+        self.off_duty.extend(frame.off_duty);
         let contacts = frame.contacts;
         for (sum, count) in self.contact_events.iter_mut().zip([contacts.wall_events, contacts.peer_events]) {
             *sum += u64::from(count);

@@ -9,12 +9,15 @@
 //! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
 mod ailments;
+mod base;
+mod outcome;
 mod part;
 mod placement;
 mod unit;
 
+use crate::base_station::{BaseRecord, Circumference};
 use crate::body::Pose;
-use crate::brain::{Brain, BrainError};
+use crate::brain::Brain;
 use crate::config::SwarmConfig;
 use crate::contacts::{ContactCounts, Contacts, Solid};
 use crate::faults::{Fault, FaultPlan};
@@ -26,58 +29,20 @@ use crate::radio::Ether;
 use crate::scenario::{Course, OBSTACLE_SPACING, PERCEPTION_RANGE, Scenario, Scene};
 use crate::trace::{Frame, Observer, RobotState};
 use crate::units::{micrometres, unit_q14};
+use base::BaseStation;
 use core::fmt;
 use core::ops::ControlFlow;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_input::InputError;
+pub use outcome::{Outcome, Progress, StepError};
 use part::{CROWD, Numbered, PART, Part};
 use rayon::prelude::*;
+use std::sync::Arc;
 use unit::{Surroundings, Unit};
 
 /// The farthest coordinate a percept and a message can tell, metres.
 const MAX_COORDINATE: f64 = 32.767;
-
-/// How far a run has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// Ticks simulated since the swarm was made.
-    pub tick: u64,
-    /// The tick at which this run ends.
-    pub end: u64,
-}
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// All ticks are simulated.
-    Finished,
-    /// The callback asked to stop.
-    Interrupted,
-}
-
-/// A brain failed.
-#[derive(Debug)]
-pub struct StepError {
-    /// Whose brain.
-    pub robot: usize,
-    /// In which tick.
-    pub tick: u64,
-    /// Why.
-    pub source: BrainError,
-}
-
-impl fmt::Display for StepError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "robot {} gave no command in tick {}: {}", self.robot, self.tick, self.source)
-    }
-}
-
-impl core::error::Error for StepError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        Some(&self.source)
-    }
-}
 
 /// A swarm in a world. All lengths in real metres.
 pub struct Swarm<B> {
@@ -105,6 +70,7 @@ pub struct Swarm<B> {
     faults: FaultPlan,
     /// Who is carried away when, the next one last.
     carried: Vec<Fault>,
+    base: Option<BaseStation>,
     recorded: Recorded,
 }
 
@@ -133,7 +99,7 @@ pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError
 }
 
 /// Ticks until the world has taken its course.
-fn arrival_tick(course: &Course) -> u64 {
+pub fn arrival_tick(course: &Course) -> u64 {
     (course.end_s() * f64::from(TICKS_PER_SECOND)).ceil() as u64
 }
 
@@ -152,7 +118,7 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
         return Err(InputError::new("scale", config.scale, way_out));
     }
     let robots = config.lab.robots.count;
-    let poses = placement::scattered(&world, robots, config.seed).ok_or_else(|| {
+    let poses = placement::scattered(&world, robots, config.lab.base_station.sends, config.seed).ok_or_else(|| {
         let way_out = format!(
             "so many robots find no room in the region at scale {}; fewer robots, a larger scale or a larger region are needed",
             config.scale
@@ -168,15 +134,26 @@ impl<B: Brain> Swarm<B> {
     /// with the brain that `brain` gives for its number.
     ///
     /// # Errors
-    /// [`InputError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m, or
-    /// the robots find no room.
-    pub fn new(
+    /// [`InputError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m,
+    /// the robots find no room, or a base station is to send them, which needs a pattern.
+    pub fn new(scenario: &Scenario, config: SwarmConfig, brain: impl FnMut(usize) -> B) -> Result<Self, InputError> {
+        Self::with_pattern(scenario, config, None, brain)
+    }
+
+    /// The same with a pattern of this circumference, as a base station needs it; without one the circumference is not used.
+    ///
+    /// # Errors
+    /// As of [`new`](Self::new).
+    pub fn with_pattern(
         scenario: &Scenario,
         config: SwarmConfig,
+        circumference: Option<Arc<Circumference>>,
         mut brain: impl FnMut(usize) -> B,
     ) -> Result<Self, InputError> {
         let (world, poses, faults) = set_up(scenario, &config)?;
         let lab = &config.lab;
+        let positions: Vec<Point<f64>> = poses.iter().map(|pose| pose.position).collect();
+        let base = BaseStation::of(lab, circumference, &faults, &positions, world.targets().len())?;
         let n = lab.robots.count;
         let samples = scenario.fixed_walls().boundary_samples(OBSTACLE_SPACING);
         let samples: Vec<Point<f64>> = samples.into_iter().map(|p| p * config.scale).collect();
@@ -193,7 +170,7 @@ impl<B: Brain> Swarm<B> {
             ring: ProximityRing::new(&lab.proximity),
             parts: units.chunks(PART).map(|_| Part::default()).collect(),
             units,
-            positions: poses.iter().map(|pose| pose.position).collect(),
+            positions,
             poses,
             samples,
             tracker,
@@ -205,6 +182,7 @@ impl<B: Brain> Swarm<B> {
             tick: 0,
             carried: faults.faults().iter().filter(|fault| fault.kind == FaultKind::Carried).rev().copied().collect(),
             faults,
+            base,
             recorded: Recorded { robots: vec![RobotState::default(); n], ..Recorded::default() },
             world,
             config,
@@ -244,6 +222,11 @@ impl<B: Brain> Swarm<B> {
         &self.faults
     }
 
+    /// What the base station did, if there is one.
+    pub fn base_record(&self) -> Option<&BaseRecord> {
+        self.base.as_ref().map(|base| &base.record)
+    }
+
     /// Where robots are and look now.
     pub fn poses(&self) -> &[Pose] {
         &self.poses
@@ -257,7 +240,8 @@ impl<B: Brain> Swarm<B> {
     /// The present moment.
     pub fn frame(&self) -> Frame<'_> {
         let Recorded { targets_um, robots, contacts } = &self.recorded;
-        Frame { tick: self.tick, targets_um, robots, contacts: *contacts }
+        let off_duty = self.base.as_ref().map_or(&[][..], BaseStation::off_duty);
+        Frame { tick: self.tick, targets_um, robots, off_duty, contacts: *contacts }
     }
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
@@ -298,12 +282,18 @@ impl<B: Brain> Swarm<B> {
     /// and the swarm cannot go on.
     pub fn step(&mut self) -> Result<(), StepError> {
         self.carry_away();
+        self.send_and_call();
         self.grid.rebuild((0..).zip(self.positions.iter().copied()));
         self.ether.begin(self.tick, &self.positions);
         self.think_and_drive()?;
         self.near.clear();
         for part in &self.parts {
-            part.letters.iter().for_each(|(robot, letter)| self.ether.send(usize::from(*robot), letter));
+            for (robot, letter) in &part.letters {
+                self.ether.send(usize::from(*robot), letter);
+                if let (Some(base), Some(report)) = (&mut self.base, letter.target()) {
+                    base.hear(report, self.tick);
+                }
+            }
             self.near.extend_from_slice(&part.near);
         }
         let solid = Solid {
@@ -334,6 +324,15 @@ impl<B: Brain> Swarm<B> {
             );
             self.poses[robot] = pose;
             self.positions[robot] = pose.position;
+        }
+    }
+
+    /// The base station decides once a second.
+    fn send_and_call(&mut self) {
+        if let Some(base) = &mut self.base
+            && self.tick.is_multiple_of(u64::from(TICKS_PER_SECOND))
+        {
+            base.decide(self.tick, &self.positions, self.scene.targets(), &mut self.units);
         }
     }
 

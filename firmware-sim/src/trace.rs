@@ -1,17 +1,18 @@
 //! A recorded run: poses, wheel commands, targets and contacts of every tick, or of every n-th, in integers.
 //!
-//! # Binary layout, version 2
+//! # Binary layout, version 3
 //! Little-endian throughout, no padding, nothing after the last frame.
 //!
 //! | bytes | content |
 //! |---|---|
 //! | 8 | magic `grntrace` |
-//! | 2 | version, 2 |
+//! | 2 | version, 3 |
 //! | 2 + n | length n of the scenario's name, then the name in UTF-8 |
 //! | 8, 8 | seed (u64), scale (f64) |
 //! | 8, 8 | settle_s (f64), target_speed_m_per_s (f64) |
 //! | 2, 2, 2, 2 | ticks per second, robots, mothers, targets (u16) |
 //! | 4 | ticks per frame n (u32), at least 1 |
+//! | 4 + m | length m of the laboratory's file, then the file with every value written out, in UTF-8 |
 //! | 4 | frames (u32); frame 0 is the start, frame k the world after tick k · n |
 //!
 //! and per frame
@@ -22,7 +23,8 @@
 //! | 16 per robot | x, y in micrometres (i32), heading (cos, sin) in 2^-14, left and right command in steps/s (i16) |
 //! | 16 | peer events and wall events since the frame before, pairs in contact, robots at walls (u32) |
 //!
-//! Version 1, which is read too, has no ticks per frame (every tick is a frame), and contacts in u16, 8 bytes.
+//! Versions 1 and 2, which are read too, do not tell the laboratory. Version 1 has no ticks per frame (every tick is a frame), and
+//! contacts in u16, 8 bytes.
 
 mod frame;
 mod header;
@@ -34,7 +36,7 @@ pub use header::TraceHeader;
 
 const MAGIC: &[u8; 8] = b"grntrace";
 /// The layout's version.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 /// What stands for the place of a target that is not there.
 pub const NOT_THERE: [i32; 2] = [i32::MIN; 2];
 /// By how much the contacts of a frame in version 1 are shorter.
@@ -108,19 +110,22 @@ impl Trace {
                 tick: index as u64 * u64::from(self.header.ticks_per_frame),
                 targets_um: &self.targets[index * targets..(index + 1) * targets],
                 robots: &self.robots[index * robots..(index + 1) * robots],
+                off_duty: &[],
                 contacts: self.contacts[index],
             }
         })
     }
 
-    /// The trace in the layout of the module's page. Names longer than 65,535 bytes are cut.
+    /// The trace in the layout of the module's page. Names longer than 65,535 bytes are cut. A laboratory that is not known is empty.
     pub fn encode(&self) -> Vec<u8> {
         let TraceHeader { scenario, seed, scale, settle_s, target_speed_m_per_s, .. } = &self.header;
         let mut name = scenario.as_str();
         while name.len() > usize::from(u16::MAX) {
             name = &name[..name.char_indices().next_back().map_or(0, |(at, _)| at)];
         }
-        let mut out = Vec::with_capacity(64 + name.len() + self.len() * self.header.bytes_per_frame());
+        let laboratory = self.header.laboratory.as_deref().unwrap_or_default();
+        let mut out =
+            Vec::with_capacity(64 + name.len() + laboratory.len() + self.len() * self.header.bytes_per_frame());
         out.extend(MAGIC);
         out.extend(VERSION.to_le_bytes());
         out.extend((name.len() as u16).to_le_bytes());
@@ -134,6 +139,8 @@ impl Trace {
             out.extend(count.to_le_bytes());
         }
         out.extend(ticks_per_frame.to_le_bytes());
+        out.extend((laboratory.len() as u32).to_le_bytes());
+        out.extend(laboratory.as_bytes());
         out.extend((self.len() as u32).to_le_bytes());
         for frame in self.frames() {
             for coordinate in frame.targets_um.iter().flat_map(|target| target.unwrap_or(NOT_THERE)) {
@@ -166,9 +173,7 @@ impl Trace {
         }
         let narrow = version == 1;
         let length = usize::from(reader.u16()?);
-        let (name, rest) = reader.bytes.split_at_checked(length).ok_or(TraceError::Length)?;
-        reader.bytes = rest;
-        let scenario = str::from_utf8(name).map_err(|_| TraceError::Name)?.to_owned();
+        let scenario = reader.text(length)?.ok_or(TraceError::Name)?;
         let mut header = TraceHeader {
             scenario,
             seed: u64::from_le_bytes(reader.take()?),
@@ -180,9 +185,15 @@ impl Trace {
             mothers: reader.u16()?,
             targets: reader.u16()?,
             ticks_per_frame: 1,
+            laboratory: None,
         };
         if !narrow {
             header.ticks_per_frame = reader.u32()?;
+        }
+        if version >= 3 {
+            let length = reader.u32()? as usize;
+            let written = reader.text(length)?.ok_or(TraceError::Laboratory)?;
+            header.laboratory = (!written.is_empty()).then_some(written);
         }
         if header.ticks_per_second == 0 || header.ticks_per_frame == 0 {
             return Err(TraceError::Ticks);
@@ -310,6 +321,12 @@ impl Reader<'_> {
         self.bytes = rest;
         Ok(*taken)
     }
+    /// So many bytes as text; `None` if they are not UTF-8.
+    fn text(&mut self, length: usize) -> Result<Option<String>, TraceError> {
+        let (text, rest) = self.bytes.split_at_checked(length).ok_or(TraceError::Length)?;
+        self.bytes = rest;
+        Ok(str::from_utf8(text).ok().map(str::to_owned))
+    }
     fn u16(&mut self) -> Result<u16, TraceError> {
         self.take().map(u16::from_le_bytes)
     }
@@ -333,6 +350,8 @@ pub enum TraceError {
     Version(u16),
     /// The scenario's name is not UTF-8.
     Name,
+    /// The laboratory is not UTF-8.
+    Laboratory,
     /// No ticks per second or per frame.
     Ticks,
     /// There are too few or too many bytes.
@@ -343,8 +362,11 @@ impl fmt::Display for TraceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             TraceError::NotATrace => write!(f, "not a trace: it does not begin with \"grntrace\""),
-            TraceError::Version(version) => write!(f, "layout version {version}; this program reads 1 to {VERSION}"),
+            TraceError::Version(version) => {
+                write!(f, "layout version {version}; this program reads 1 to {VERSION}, a newer one may read it")
+            }
             TraceError::Name => write!(f, "the scenario's name is not UTF-8"),
+            TraceError::Laboratory => write!(f, "the laboratory is not UTF-8"),
             TraceError::Ticks => write!(f, "it has 0 ticks per second or per frame"),
             TraceError::Length => write!(f, "the length does not fit the header: cut off, or something follows"),
         }

@@ -1,7 +1,7 @@
 //! Processor in the loop: the controllers of a swarm's first robots run in QEMU, from the image that is flashed.
 
 use crate::files::blob_bytes;
-use crate::simulation::{Simulation, SimulationError, native, run};
+use crate::simulation::{Setting, Simulation, SimulationError, native, run};
 use firmware_sim::brain::Brain;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::link::RemoteBrain;
@@ -127,11 +127,10 @@ pub fn simulate(
         started.map_err(|error| EmulationError::Robot(robot, error))
     };
     let emulated = (0..emulation.robots).map(start).collect::<Result<Vec<_>, _>>()?;
+    let setting = Setting::new(blob, scenario, &config)?;
     let simulation = match number {
-        NumberType::F32 => run(blob, scenario, config, number, mixed(emulated, native::<f32>(blob)?), observer, watch),
-        NumberType::Q8_24 => {
-            run(blob, scenario, config, number, mixed(emulated, native::<Q8_24>(blob)?), observer, watch)
-        }
+        NumberType::F32 => run(&setting, config, number, mixed(emulated, native::<f32>(blob)?), observer, watch),
+        NumberType::Q8_24 => run(&setting, config, number, mixed(emulated, native::<Q8_24>(blob)?), observer, watch),
     };
     Ok(simulation?)
 }

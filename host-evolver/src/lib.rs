@@ -13,6 +13,7 @@ pub mod faults;
 pub mod figures;
 pub mod files;
 pub mod model;
+pub mod pattern_length;
 pub mod quoting;
 pub mod realities;
 pub mod record;

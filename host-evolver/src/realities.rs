@@ -1,6 +1,6 @@
 //! A blob in many laboratories around a nominal one: a distribution instead of one seed.
 
-use crate::simulation::{Simulation, SimulationError, simulate};
+use crate::simulation::{Setting, Simulation, SimulationError, simulate_in};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::run_seed;
 use firmware_sim::scenario::Scenario;
@@ -8,7 +8,7 @@ use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
 use grn_optimisers::statistics::wilson;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 pub const ENOUGH_REALITIES: f64 = 0.95;
 
 /// What came out in one reality.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reality {
     /// Its number.
     pub number: u64,
@@ -134,8 +134,9 @@ pub fn try_all(
     done: &(dyn Fn() + Sync),
 ) -> Result<Option<Robustness>, SimulationError> {
     let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let setting = Setting::new(blob, scenario, config)?;
     let one = |number| {
-        let simulation = simulate(blob, scenario, reality(config, number), number_type, &mut (), watch)?;
+        let simulation = simulate_in(&setting, reality(config, number), number_type, &mut (), watch)?;
         done();
         Ok(simulation.map(|simulation| Reality::of(number, &simulation)))
     };

@@ -56,6 +56,7 @@ pub fn metrics(simulation: &Simulation, scenario: &Scenario) -> Value {
         "radial_error_share": simulation.radial_error_share(),
         "metrics": simulation.metrics,
         "faults": faults::happened(simulation),
+        "base_station": simulation.base,
         "verdict": simulation.verdict(),
         "works": simulation.verdict().works(),
     })

@@ -1,6 +1,8 @@
 //! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
 
 use crate::evaluation::Model;
+use crate::pattern_length::circumference;
+use firmware_sim::base_station::{BaseRecord, Circumference};
 use firmware_sim::brain::{Brain, Onboard};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::faults::{Absences, FaultPlan};
@@ -84,6 +86,8 @@ pub struct Simulation {
     pub metrics: Metrics,
     /// What went wrong with robots.
     pub faults: FaultPlan,
+    /// What the base station did, if there is one.
+    pub base: Option<BaseRecord>,
     /// Radius of the model's ring around a lone target in free space, world metres.
     pub ring_radius_m: f64,
     /// The blob that ran.
@@ -147,6 +151,26 @@ impl Simulation {
     }
 }
 
+/// What robots run, and where; made once for many runs.
+#[derive(Clone)]
+pub struct Setting<'a> {
+    blob: &'a Blob,
+    scenario: &'a Scenario,
+    circumference: Option<Arc<Circumference>>,
+}
+
+impl<'a> Setting<'a> {
+    /// Of runs with this configuration, but for seed and conditions, which may differ.
+    ///
+    /// # Errors
+    /// [`SimulationError::NoPattern`] if there is a base station and the blob has no pattern that it could measure.
+    pub fn new(blob: &'a Blob, scenario: &'a Scenario, config: &SwarmConfig) -> Result<Self, SimulationError> {
+        let known = || circumference(blob, scenario, config).map(Arc::new).map_err(SimulationError::NoPattern);
+        let circumference = config.lab.base_station.sends.then(known).transpose()?;
+        Ok(Setting { blob, scenario, circumference })
+    }
+}
+
 /// Runs `blob` on every robot until all targets have arrived. `observer` sees every tick; a
 /// [`Recorder`](firmware_sim::trace::Recorder) keeps them, `()` does not. `watch` is called once a simulated second with the
 /// share done and may stop the run.
@@ -161,9 +185,23 @@ pub fn simulate(
     observer: &mut dyn Observer,
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
+    simulate_in(&Setting::new(blob, scenario, &config)?, config, number, observer, watch)
+}
+
+/// [`simulate`] in a setting that was made before.
+///
+/// # Errors
+/// As of [`simulate`].
+pub fn simulate_in(
+    setting: &Setting<'_>,
+    config: SwarmConfig,
+    number: NumberType,
+    observer: &mut dyn Observer,
+    watch: impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<Option<Simulation>, SimulationError> {
     match number {
-        NumberType::F32 => run(blob, scenario, config, number, native::<f32>(blob)?, observer, watch),
-        NumberType::Q8_24 => run(blob, scenario, config, number, native::<Q8_24>(blob)?, observer, watch),
+        NumberType::F32 => run(setting, config, number, native::<f32>(setting.blob)?, observer, watch),
+        NumberType::Q8_24 => run(setting, config, number, native::<Q8_24>(setting.blob)?, observer, watch),
     }
 }
 
@@ -173,19 +211,20 @@ pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Onboard
     Ok(move |robot: usize| Onboard::new(&loaded, robot as u16))
 }
 
-/// [`simulate`] with any brains.
+/// [`simulate_in`] with any brains.
 pub(crate) fn run<B: Brain>(
-    blob: &Blob,
-    scenario: &Scenario,
+    setting: &Setting<'_>,
     config: SwarmConfig,
     number: NumberType,
     brain: impl FnMut(usize) -> B,
     observer: &mut dyn Observer,
     mut watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
+    let Setting { blob, scenario, circumference } = setting.clone();
     let ruler = PatternRuler::new(blob, scenario).map_err(SimulationError::NoPattern)?;
     check_length(scenario, &config).map_err(SimulationError::Config)?;
-    let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
+    let swarm = Swarm::with_pattern(scenario, config.clone(), circumference, brain);
+    let mut swarm = swarm.map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
     let marks = Marks::of(swarm.world().clone(), &config, swarm.faults());
     let mut meter = meter(&ruler, &marks, TICKS_PER_SECOND);
@@ -196,7 +235,8 @@ pub(crate) fn run<B: Brain>(
         Outcome::Finished => {}
     }
     let (metrics, ring_radius_m, blob) = (meter.metrics(), ruler.ring_radius(), blob.identity());
-    Ok(Some(Simulation { metrics, faults: swarm.faults().clone(), ring_radius_m, blob, number, config }))
+    let (faults, base) = (swarm.faults().clone(), swarm.base_record().cloned());
+    Ok(Some(Simulation { metrics, faults, base, ring_radius_m, blob, number, config }))
 }
 
 /// What a [`meter`] of a run borrows.

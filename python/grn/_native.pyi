@@ -122,6 +122,7 @@ class Robot:
         targets: Optional[Mapping[int, Iterable[float]]] = None,
         obstacles: Optional[Iterable[Iterable[float]]] = None,
         heard: Optional[Iterable[Union[Message, tuple[Message, float]]]] = None,
+        home: Optional[Iterable[float]] = None,
     ) -> Command: ...
 
 class Progress:

@@ -65,6 +65,7 @@ fn arrays<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
         robots,
         mothers,
         targets,
+        laboratory,
     } = trace.header();
     let found = PyDict::new(py);
     found.set_item("scenario", scenario)?;
@@ -77,6 +78,7 @@ fn arrays<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
     found.set_item("mothers", mothers)?;
     found.set_item("robots", robots)?;
     found.set_item("targets", targets)?;
+    found.set_item("laboratory", laboratory)?;
     found.set_item("frames", trace.len())?;
     let states = || trace.frames().flat_map(|frame| frame.robots.iter());
     let put = |name, bytes: Vec<u8>| found.set_item(name, PyByteArray::new(py, &bytes));
@@ -123,6 +125,7 @@ pub fn replay(
             tick,
             targets_um: targets_at.next().unwrap_or_default(),
             robots: &states.collect::<Vec<_>>(),
+            off_duty: &[],
             contacts: ContactCounts { peer_events, wall_events, peers, walls },
         });
     }

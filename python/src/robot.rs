@@ -102,9 +102,9 @@ impl Robot {
         }
     }
 
-    /// One control tick: perceive, express genes, move.
+    /// One control tick: perceive, express genes, move; with `home`, a place in metres, the robot drives there instead.
     #[pyo3(signature = (*, position=None, heading=None, pose_age=0.0, elapsed=TICK, proximity=None, targets=None,
-        obstacles=None, heard=None))]
+        obstacles=None, heard=None, home=None))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword of its own in Python")]
     fn tick(
         &mut self,
@@ -116,6 +116,7 @@ impl Robot {
         targets: Option<BTreeMap<u8, Bound<'_, PyAny>>>,
         obstacles: Option<&Bound<'_, PyAny>>,
         heard: Option<&Bound<'_, PyAny>>,
+        home: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Command> {
         let percept = Percept {
             fix: fix(position, heading, pose_age)?,
@@ -127,9 +128,12 @@ impl Robot {
             })?,
             heard: heard.map_or(Ok(Vec::new()), |messages| listed("heard", messages, MAX_HEARD, hearing))?,
         };
-        let command = match &mut self.controller {
-            Native::F32(controller) => controller.tick(&percept),
-            Native::Q8_24(controller) => controller.tick(&percept),
+        let home = home.map(|place| millimetres("home", place)).transpose()?;
+        let command = match (&mut self.controller, home) {
+            (Native::F32(controller), None) => controller.tick(&percept),
+            (Native::Q8_24(controller), None) => controller.tick(&percept),
+            (Native::F32(controller), Some(home)) => controller.tick_home(&percept, home),
+            (Native::Q8_24(controller), Some(home)) => controller.tick_home(&percept, home),
         };
         let command = command.map_err(refused)?;
         let broadcast = command.broadcast.map(|inner| Message { inner });

@@ -119,7 +119,9 @@ pub fn measure(
         )));
     }
     let config = usual_config(blob.scale, Laboratory::default()).with_robots(robots.into());
-    let header = TraceHeader { ticks_per_second, robots, targets, ..TraceHeader::of(&scenario, &config) };
+    // Nor is the laboratory of elsewhere.
+    let header =
+        TraceHeader { ticks_per_second, robots, targets, laboratory: None, ..TraceHeader::of(&scenario, &config) };
     let world = scenario.clone();
     let ruler = PatternRuler::new(&blob, &world).map_err(|error| failed(&error))?;
     // What went wrong elsewhere is not told.
@@ -130,6 +132,6 @@ pub fn measure(
     py.detach(|| replay(&header, positions_um, targets_um, contacts, &mut (&mut meter, &mut recorder)))?;
     let (metrics, ring_radius_m) = (meter.metrics(), ruler.ring_radius());
     let (blob, number) = (blob.identity(), NumberType::F32);
-    let simulation = Simulation { metrics, faults, ring_radius_m, blob, number, config };
+    let simulation = Simulation { metrics, faults, base: None, ring_radius_m, blob, number, config };
     Ok(Run { simulation, trace: recorder.into_trace(), scenario })
 }

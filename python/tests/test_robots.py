@@ -44,6 +44,16 @@ def test_robots_give_the_bits_of_the_simulator(blob, channel):
         assert first.tick(**percept) == second.tick(**percept)
 
 
+def test_a_robot_that_is_called_home_drives_there(blob):
+    for dtype in ("f32", "q8.24"):
+        robot = grn.Robot(blob, 0, dtype=dtype)
+        for _ in range(32):
+            command = robot.tick(position=(1.0, 2.0), heading=0.0, targets={0: (2.2, 2.0)}, home=(-20.0, 2.0))
+        assert max(command.steps_per_s) < -100
+    with pytest.raises(ValueError, match="home"):
+        robot.tick(position=(1.0, 2.0), heading=0.0, home=(40.0, 0.0))
+
+
 def test_a_robot_without_a_pose_stops_in_the_end(blob):
     robot = grn.Robot(blob, 0)
     for _ in range(32):

@@ -36,7 +36,7 @@ macro_rules! number {
 ///
 /// Errors of places beyond a metre leave a swarm of robots 7 cm across no shape. Of times on the way as much is kept of each robot's
 /// past.
-pub(super) const NUMBERS: [Number; 39] = [
+pub(super) const NUMBERS: [Number; 41] = [
     number!(bodies.target_radius_m, 0.0, 0.5, "metres", Stays),
     number!(localisation.rate_hz, 0.1, 1000.0, "per second", Varies),
     number!(localisation.latency_s, 0.0, 2.0, "seconds", Varies),
@@ -76,6 +76,9 @@ pub(super) const NUMBERS: [Number; 39] = [
     number!(faults.tracker_jump_per_hour, 0.0, 60.0, "per robot and hour", Varies),
     number!(faults.lasts_s, 0.1, 100_000.0, "seconds", Varies),
     number!(proximity.aperture_deg, 0.0, 45.0, "degrees", Stays),
+    // Narrower than a robot and some room, no ring could be.
+    number!(base_station.spacing_m, 0.08, 10.0, "metres", Stays),
+    number!(base_station.reserve, 0.0, 1.0, "(a share)", Stays),
 ];
 
 impl Laboratory {

@@ -36,6 +36,8 @@ pub struct Laboratory {
     pub base: Option<String>,
     /// The swarm.
     pub robots: Robots,
+    /// Where robots come from.
+    pub base_station: BaseStation,
     /// What is solid besides walls and robots.
     pub bodies: Bodies,
     /// How robots learn where they are.
@@ -64,6 +66,21 @@ pub struct Robots {
     pub count: usize,
     /// How many of them, the first ones, are mother robots with a far sense; 1..=`count`.
     pub mothers: usize,
+}
+
+/// `[base_station]`: where robots come from and go to.
+///
+/// Robots wait at their places, switched off, until the base station sends them: one for every `spacing_m` of the pattern's
+/// circumference, rounded up, and mothers always.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct BaseStation {
+    /// Whether there is one. If not, all robots work from the start on.
+    pub sends: bool,
+    /// Wanted distance between neighbours along the pattern, metres.
+    pub spacing_m: f64,
+    /// How many more robots than needed may stay out before spare ones are called home, as a share of those needed, rounded up.
+    pub reserve: f64,
 }
 
 /// `[bodies]`: what is solid besides walls and robots.
@@ -206,6 +223,7 @@ impl Default for Laboratory {
             name: Shipped::Ideal.name().to_owned(),
             base: None,
             robots: Robots::default(),
+            base_station: BaseStation::default(),
             bodies: Bodies::default(),
             localisation: Localisation::default(),
             radio: Radio::default(),
@@ -222,6 +240,12 @@ impl Default for Laboratory {
 impl Default for Robots {
     fn default() -> Self {
         Robots { count: 12, mothers: 2 }
+    }
+}
+
+impl Default for BaseStation {
+    fn default() -> Self {
+        BaseStation { sends: false, spacing_m: 0.2, reserve: 0.2 }
     }
 }
 

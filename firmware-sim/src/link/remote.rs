@@ -2,8 +2,8 @@
 
 use crate::brain::{Brain, BrainError};
 use grn_core::blob::Identity;
-use grn_core::robot::link::message::Reset;
-use grn_core::robot::{Command, Percept};
+use grn_core::robot::link::message::{Homeward, Reset};
+use grn_core::robot::{Command, Millimetres, Percept};
 use grn_link::{Client, LinkError, Wire, flashing};
 
 /// A controller behind a link.
@@ -27,6 +27,10 @@ impl<W: Wire> RemoteBrain<W> {
 impl<W: Wire> Brain for RemoteBrain<W> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, BrainError> {
         self.client.ask(percept).map_err(BrainError::new)
+    }
+
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, BrainError> {
+        self.client.ask(&Homeward { home, percept: percept.clone() }).map_err(BrainError::new)
     }
 
     fn reboot(&mut self) -> Result<(), BrainError> {

@@ -39,6 +39,11 @@ impl Letter {
         letter
     }
 
+    /// What it says of a target.
+    pub fn target(&self) -> Option<TargetReport> {
+        self.target
+    }
+
     /// The message.
     pub fn message(&self) -> Message {
         let obstacles = self.obstacles.into();

@@ -1,6 +1,6 @@
 //! Some of a swarm's robots, for which one thread thinks at a time.
 
-use super::StepError;
+use super::outcome::StepError;
 use super::unit::{Surroundings, Unit};
 use crate::body::Pose;
 use crate::brain::Brain;

@@ -10,6 +10,10 @@ use grn_core::robot::epuck2::BODY_RADIUS;
 
 /// Inner and outer radius of the ring in which robots start, in multiples of the scenario's `d_max`.
 const START_RING: [f64; 2] = [0.3, 1.6];
+/// The same for the places at a base station: outside the pattern, which must not form around them.
+const BASE_RING: [f64; 2] = [1.6, 2.2];
+/// Free space between robots at a base station, metres: one that comes home must get in between.
+const BASE_CLEARANCE: f64 = 0.04;
 /// The share of its path by which a target shows which way it goes.
 const FIRST_STRETCH: f64 = 1e-3;
 /// Free space between bodies and around walls at the start, metres.
@@ -24,14 +28,16 @@ const PATIENCE: u32 = 200;
 /// `count` robots at random places, with random headings, behind the first target's start: in the half of a ring around it
 /// that lies against its way, so that the swarm has yet to go around it; inside the region, clear of walls and of each
 /// other. The ring grows when they do not fit, and closes when the half plane is full. `None` when even the whole region,
-/// at random, has no room.
-pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec<Pose>> {
+/// at random, has no room. Those at a base station stand farther from the target, with no wall in between, and from each other.
+pub(super) fn scattered(world: &Scenario, count: usize, at_base: bool, seed: u64) -> Option<Vec<Pose>> {
     let mut stream = Stream::new(seed, Component::Placement, 0);
     let first = world.targets().iter().find(|target| target.presence().holds(0.0))?;
     let centre = first.path().at(0.0);
     let way = first.path().at(FIRST_STRETCH) - centre;
     let walls = world.walls_at(0.0);
-    let [inner, mut outer] = START_RING.map(|share| share * world.ring().d_max);
+    let (ring, clearance) = if at_base { (BASE_RING, BASE_CLEARANCE) } else { (START_RING, CLEARANCE) };
+    let [inner, start_outer] = ring.map(|share| share * world.ring().d_max);
+    let mut outer = start_outer;
     let region = world.region();
     let region_reach = 2.0 * (region[0] + region[1] + centre.length());
     let mut poses: Vec<Pose> = Vec::with_capacity(count);
@@ -44,7 +50,8 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
         let behind = if only_behind && bearing.dot(way) > 0.0 { -bearing } else { bearing };
         let position = centre + behind * radius;
         let heading = turned(stream.unit());
-        if free(world, &walls, &poses, position) {
+        let walled_off = || at_base && walls.ray(centre, behind, radius).is_some();
+        if free(world, &walls, &poses, position, clearance) && !walled_off() {
             poses.push(Pose { position, heading });
             misses = 0;
             continue;
@@ -58,7 +65,7 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
                     return None;
                 }
                 only_behind = false;
-                outer = START_RING[1] * world.ring().d_max;
+                outer = start_outer;
             }
         }
     }
@@ -73,7 +80,7 @@ pub(super) fn carried(world: &Scenario, walls: &Walls, poses: &[Pose], from: Pos
         let (way, heading) = (turned(stream.unit()), turned(stream.unit()));
         let distance = least + stream.unit() * (most - least);
         let position = from.position + way * distance;
-        if free(world, walls, poses, position) && walls.ray(from.position, way, distance).is_none() {
+        if free(world, walls, poses, position, CLEARANCE) && walls.ray(from.position, way, distance).is_none() {
             return Pose { position, heading };
         }
     }
@@ -86,8 +93,8 @@ fn turned(share: f64) -> Vector<f64> {
     Vector::new(cos, sin)
 }
 
-fn free(world: &Scenario, walls: &Walls, poses: &[Pose], position: Point<f64>) -> bool {
-    let apart = 2.0 * BODY_RADIUS + CLEARANCE;
+fn free(world: &Scenario, walls: &Walls, poses: &[Pose], position: Point<f64>, clearance: f64) -> bool {
+    let apart = 2.0 * BODY_RADIUS + clearance;
     let [east, north] = world.region();
     (0.0..=east).contains(&position.x)
         && (0.0..=north).contains(&position.y)

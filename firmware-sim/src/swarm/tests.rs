@@ -1,7 +1,9 @@
+mod base;
 mod faults;
 mod moving;
 
 use super::*;
+use crate::brain::BrainError;
 use crate::geometry::length_squared;
 use crate::lab::{self, Laboratory, Wheels};
 use crate::trace::{Recorder, Trace, TraceHeader};

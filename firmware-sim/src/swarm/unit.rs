@@ -16,8 +16,9 @@ use crate::random::{Component, Stream};
 use crate::scenario::Scene;
 use crate::timing::{Clock, FRAME_US};
 use grn_core::geometry::Point;
-use grn_core::robot::Percept;
 use grn_core::robot::epuck2::{BODY_RADIUS, MAX_WHEEL_SPEED, PROXIMITY_SENSORS};
+use grn_core::robot::percept::MAX_HEARD;
+use grn_core::robot::{Heard, Message, Millimetres, Percept};
 
 /// What all robots perceive: the world as the last frame left it. Nothing in it changes while they think, so they may do so in any
 /// order, or at once.
@@ -35,11 +36,28 @@ pub(super) struct Surroundings<'a> {
     pub ether: &'a Ether,
 }
 
+/// What the base station has a robot do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Its part of the pattern, as without a base station.
+    Form,
+    /// To go to this place.
+    Home(Millimetres),
+    /// To stand where it is, switched off.
+    Wait,
+}
+
 /// A robot.
 pub(super) struct Unit<B> {
     number: usize,
     pub brain: B,
     pub wheels: [i16; 2],
+    order: Order,
+    /// What the base station has told it since its last tick.
+    told: Option<Message>,
+    has_thought: bool,
+    /// It was switched off and is to begin anew.
+    restarts: bool,
     ailments: Ailments,
     drive: Drive,
     clock: Clock,
@@ -67,6 +85,10 @@ impl<B: Brain> Unit<B> {
             number,
             brain,
             wheels: [0; 2],
+            order: Order::Form,
+            told: None,
+            has_thought: false,
+            restarts: false,
             ailments: Ailments::new(faults),
             drive: Drive::new(&BodyParameters::drawn(&lab.wheels, seed, number)),
             clock: Clock::new(&lab.timing, seed, number),
@@ -77,6 +99,13 @@ impl<B: Brain> Unit<B> {
             noise: Stream::new(seed, Component::Sensors, number),
             slip: Stream::new(seed, Component::Wheels, number),
         }
+    }
+
+    /// Takes an order and what else the base station says; a robot that was switched off begins anew.
+    pub fn obey(&mut self, order: Order, told: Option<Message>) {
+        self.restarts |= self.order == Order::Wait && order != Order::Wait && self.has_thought;
+        self.order = order;
+        self.told = told;
     }
 
     /// One frame from `pose` on: thinks whenever its clock says so, and drives on in between. What it broadcasts, if anything;
@@ -100,9 +129,12 @@ impl<B: Brain> Unit<B> {
             self.track.jump(self.ailments.now().jump);
         }
         around.tracker.measure(&mut self.track, begin, pose);
-        if self.ailments.now().off {
+        if self.ailments.now().off || self.order == Order::Wait {
             self.miss(around, end);
             return Ok(None);
+        }
+        if core::mem::take(&mut self.restarts) {
+            self.brain.reboot()?;
         }
         let slip = self.slip_of_this_frame(around);
         let (mut now, mut letter) = (begin, None);
@@ -164,7 +196,11 @@ impl<B: Brain> Unit<B> {
     ) -> Result<Option<Letter>, BrainError> {
         let mut percept = Percept::nothing();
         self.perceive(pose, around, near, now_us, &mut percept);
-        let command = self.brain.tick(&percept)?;
+        self.has_thought = true;
+        let command = match self.order {
+            Order::Home(home) => self.brain.tick_home(&percept, home)?,
+            Order::Form | Order::Wait => self.brain.tick(&percept)?,
+        };
         self.wheels = [command.left, command.right].map(|speed| speed.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
         let broadcast = command.broadcast.filter(|_| !self.ailments.now().without_radio);
         Ok(broadcast.map(|message| Letter::of(&message, now_us)))
@@ -183,6 +219,11 @@ impl<B: Brain> Unit<B> {
         } else {
             let obstruction = Obstruction { walls: around.scene.walls(), positions: around.positions };
             around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction, &mut percept.heard);
+            if let Some(message) = self.told.take() {
+                // The inbox keeps the strongest, and the base is heard everywhere.
+                percept.heard.truncate(MAX_HEARD - 1);
+                let _ = percept.heard.push(Heard { message, age_ms: 0 });
+            }
         }
     }
 

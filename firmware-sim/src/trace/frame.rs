@@ -23,6 +23,9 @@ pub struct Frame<'a> {
     pub targets_um: &'a [Option<[i32; 2]>],
     /// The robots.
     pub robots: &'a [RobotState],
+    /// Of each robot whether it is none of the swarm now: at a base station, or on its way from there or back. Empty if there is no
+    /// base station, and in a trace, which does not tell.
+    pub off_duty: &'a [bool],
     /// Contacts in the tick that ended here; in a trace that has not every tick, events are those since the frame before.
     pub contacts: ContactCounts,
 }

@@ -1,6 +1,7 @@
 //! What a trace is of.
 
 use crate::config::SwarmConfig;
+use crate::lab;
 use crate::scenario::{Course, Scenario};
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 
@@ -31,6 +32,8 @@ pub struct TraceHeader {
     pub mothers: u16,
     /// How many targets.
     pub targets: u16,
+    /// The laboratory as a file holds it, every value written out; `None` in a trace of an older layout.
+    pub laboratory: Option<String>,
 }
 
 impl TraceHeader {
@@ -47,6 +50,7 @@ impl TraceHeader {
             robots: config.lab.robots.count as u16,
             mothers: config.lab.robots.mothers as u16,
             targets: scenario.targets().len() as u16,
+            laboratory: Some(lab::write(&config.lab)),
         }
     }
 

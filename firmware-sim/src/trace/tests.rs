@@ -17,6 +17,7 @@ pub(crate) fn trace_of(frames: &[(Places, Places)]) -> Trace {
         robots: frames[0].1.len() as u16,
         mothers: 1,
         targets: frames[0].0.len() as u16,
+        laboratory: Some("name = \"lab\"".to_owned()),
     });
     let robot = |p| RobotState { position_um: um(p), heading_q14: [16384, -1], wheels: [-7, 300] };
     for (targets, robots) in frames {
@@ -35,11 +36,24 @@ fn example() -> Trace {
 #[test]
 fn bytes_are_as_documented_and_round_trip() {
     let bytes = example().encode();
-    assert_eq!(bytes.len(), 8 + 2 + 2 + 5 + 8 + 24 + 8 + 4 + 4 + 2 * (8 + 32 + 16));
-    assert_eq!(&bytes[..17], b"grntrace\x02\x00\x05\x00t\xc3\xa4st");
-    assert_eq!(bytes[57..73], [1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0x40, 0x42, 0x0f, 0]);
-    assert_eq!(bytes[105..121], [1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0]);
+    assert_eq!(bytes.len(), 8 + 2 + 2 + 5 + 8 + 24 + 8 + 4 + (4 + 12) + 4 + 2 * (8 + 32 + 16));
+    assert_eq!(&bytes[..17], b"grntrace\x03\x00\x05\x00t\xc3\xa4st");
+    assert_eq!(&bytes[57..77], b"\x01\0\0\0\x0c\0\0\0name = \"lab\"");
+    assert_eq!(bytes[77..89], [2, 0, 0, 0, 0, 0, 0, 0, 0x40, 0x42, 0x0f, 0]);
+    assert_eq!(bytes[121..137], [1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0]);
     assert_eq!(Trace::decode(&bytes), Ok(example()));
+}
+
+#[test]
+fn version_2_is_read_and_tells_no_laboratory() {
+    let mut bytes = example().encode();
+    bytes[8] = 2;
+    bytes.drain(61..77);
+    let trace = Trace::decode(&bytes).unwrap();
+    assert_eq!(trace.header(), &TraceHeader { laboratory: None, ..example().header().clone() });
+    let whole = example();
+    assert_eq!(trace.len(), whole.len());
+    assert!(trace.frames().zip(whole.frames()).all(|(a, b)| a.robots == b.robots && a.contacts == b.contacts));
 }
 
 #[test]
@@ -52,7 +66,7 @@ fn version_1_is_read() {
     let counts = b"\x20\0\x02\0\x01\0\x01\0\x01\0\0\0";
     let bytes = [head.as_slice(), counts, of_target, of_robots, of_contacts].concat();
     let trace = Trace::decode(&bytes).unwrap();
-    assert_eq!(trace.header(), example().header());
+    assert_eq!(trace.header(), &TraceHeader { laboratory: None, ..example().header().clone() });
     let (frame, frames) = (trace.frames().next().unwrap(), example());
     let expected = frames.frames().next().unwrap();
     assert_eq!(
@@ -70,7 +84,7 @@ fn recorded(ticks: i32, most_frames: usize) -> Trace {
     for tick in 0..ticks {
         let robots = [RobotState { position_um: [tick, 0], ..RobotState::default() }];
         let contacts = ContactCounts { wall_events: u32::from(tick > 0), walls: 1, ..ContactCounts::default() };
-        recorder.observe(&Frame { tick: tick as u64, targets_um: &[], robots: &robots, contacts });
+        recorder.observe(&Frame { tick: tick as u64, targets_um: &[], robots: &robots, off_duty: &[], contacts });
     }
     recorder.into_trace()
 }
@@ -112,8 +126,8 @@ fn other_bytes_are_rejected() {
         Trace::decode(&changed)
     };
     assert_eq!(with(0, 0), Err(TraceError::NotATrace));
-    assert_eq!((with(8, 0), with(8, 3)), (Err(TraceError::Version(0)), Err(TraceError::Version(3))));
-    assert_eq!(with(13, 0xff), Err(TraceError::Name));
+    assert_eq!((with(8, 0), with(8, 4)), (Err(TraceError::Version(0)), Err(TraceError::Version(4))));
+    assert_eq!((with(13, 0xff), with(70, 0xff)), (Err(TraceError::Name), Err(TraceError::Laboratory)));
     assert_eq!((with(49, 0), with(57, 0)), (Err(TraceError::Ticks), Err(TraceError::Ticks)));
     assert_eq!(with(64, 0xff), Err(TraceError::Length));
     assert_eq!(Trace::decode(&[bytes.clone(), vec![0]].concat()), Err(TraceError::Length));

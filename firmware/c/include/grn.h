@@ -364,6 +364,18 @@ GrnStatus grn_tick(struct GrnController *controller,
                    const struct GrnPercept *percept,
                    struct GrnCommand *command);
 
+// The same for a robot whose base station calls it home: it drives there, straight on and around what its proximity sensors
+// feel, instead of to the pattern. In any later tick it may go back to the pattern with grn_tick.
+//
+// `percept`, `command`: as for grn_tick.
+// `home`: where it is to go.
+//
+// Returns what grn_tick returns.
+GrnStatus grn_tick_home(struct GrnController *controller,
+                        const struct GrnPercept *percept,
+                        struct GrnMillimetres home,
+                        struct GrnCommand *command);
+
 // The level of the pattern morphogen M at the robot, as its genes express it now: 0 before the first target is known, then
 // about 0 to 1. A last gene XNOR may take it a little below 0, a last gene XOR a little above 1.
 //

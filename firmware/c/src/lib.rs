@@ -30,7 +30,7 @@ pub use storage::{GRN_CONTROLLER_WORDS, GrnController, GrnNumber};
 
 use core::ffi::{CStr, c_char};
 use grn_core::blob::FORMAT_VERSION;
-use grn_core::robot::Percept;
+use grn_core::robot::{Command, Millimetres, Percept};
 use pointer::{bytes, exclusive, shared, write};
 
 const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
@@ -107,6 +107,36 @@ pub unsafe extern "C" fn grn_tick(
     percept: *const GrnPercept,
     command: *mut GrnCommand,
 ) -> GrnStatus {
+    // SAFETY: what holds for the caller's pointers holds there.
+    unsafe { answered(controller, percept, command, GrnController::tick) }
+}
+
+/// The same for a robot whose base station calls it home: it drives there, straight on and around what its proximity sensors
+/// feel, instead of to the pattern. In any later tick it may go back to the pattern with grn_tick.
+///
+/// `percept`, `command`: as for grn_tick.
+/// `home`: where it is to go.
+///
+/// Returns what grn_tick returns.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn grn_tick_home(
+    controller: *mut GrnController,
+    percept: *const GrnPercept,
+    home: GrnMillimetres,
+    command: *mut GrnCommand,
+) -> GrnStatus {
+    let home = Millimetres { x: home.x, y: home.y };
+    // SAFETY: what holds for the caller's pointers holds there.
+    unsafe { answered(controller, percept, command, |controller, percept| controller.tick_home(percept, home)) }
+}
+
+/// Reads a percept, lets the controller answer, writes its command.
+unsafe fn answered(
+    controller: *mut GrnController,
+    percept: *const GrnPercept,
+    command: *mut GrnCommand,
+    answer: impl FnOnce(&mut GrnController, &Percept) -> Result<Command, GrnStatus>,
+) -> GrnStatus {
     GrnStatus::of(|| {
         // SAFETY: the caller gives null or a pointer to a command that nobody else uses now.
         unsafe { write(command, GrnCommand::default()) }?;
@@ -116,7 +146,7 @@ pub unsafe extern "C" fn grn_tick(
         let percept = unsafe { shared(percept) }?;
         let mut perceived = Percept::nothing();
         percept.tell(&mut perceived)?;
-        let answer = controller.tick(&perceived)?.into();
+        let answer = answer(controller, &perceived)?.into();
         // SAFETY: as above.
         unsafe { write(command, answer) }
     })

@@ -3,7 +3,7 @@
 use crate::status::GrnStatus;
 use core::mem::MaybeUninit;
 use grn_core::blob::{Blob, Identity};
-use grn_core::robot::{Command, Controller, Percept};
+use grn_core::robot::{Command, Controller, Millimetres, Percept};
 use grn_core::scalar::{Q8_24, Scalar};
 
 /// The size of a loaded controller in units of 8 bytes, with some to spare for later versions.
@@ -95,6 +95,16 @@ impl GrnController {
         }
     }
 
+    pub(crate) fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, GrnStatus> {
+        if let Some(controller) = self.get_mut::<f32>() {
+            tick_home(controller, percept, home)
+        } else if let Some(controller) = self.get_mut::<Q8_24>() {
+            tick_home(controller, percept, home)
+        } else {
+            Err(GrnStatus::NotLoaded)
+        }
+    }
+
     pub(crate) fn morphogen(&self) -> Result<f32, GrnStatus> {
         let float = || self.get::<f32>().map(Controller::morphogen);
         let fixed = || self.get::<Q8_24>().map(|controller| controller.morphogen().to_f32());
@@ -137,4 +147,13 @@ fn build<S: Number>(blob: &Blob, robot: u16, storage: Option<&mut GrnController>
 #[inline(never)]
 fn tick<S: Number>(controller: &mut Controller<S>, percept: &Percept) -> Result<Command, GrnStatus> {
     Ok(controller.tick(percept)?)
+}
+
+#[inline(never)]
+fn tick_home<S: Number>(
+    controller: &mut Controller<S>,
+    percept: &Percept,
+    home: Millimetres,
+) -> Result<Command, GrnStatus> {
+    Ok(controller.tick_home(percept, home)?)
 }

@@ -225,6 +225,20 @@ fn counts_beyond_the_arrays_are_refused_and_change_nothing() {
     }
 }
 
+#[test]
+fn a_robot_that_is_called_home_drives_there() {
+    let mut storage = loaded();
+    let mut command = wild();
+    let homeward = |storage: &mut GrnController, command: &mut GrnCommand| unsafe {
+        grn_tick_home(storage, &placed(), GrnMillimetres { x: -30_000, y: 0 }, command)
+    };
+    assert_eq!(homeward(&mut storage, &mut command), GrnStatus::Ok);
+    assert!(command.left < -100 && command.right == command.left, "{command:?}");
+    assert_eq!(tick(&mut storage, &placed()).left, 0, "nothing is known, so a tick leads nowhere");
+    assert_eq!(homeward(&mut GrnController::default(), &mut command), GrnStatus::NotLoaded);
+    assert_eq!(command, GrnCommand::default());
+}
+
 /// A network of `N` genes as a blob.
 fn blob_of<const N: usize>() -> Vec<u8> {
     let gene = |index: u8| Gene {

@@ -92,6 +92,23 @@ impl<S: Scalar> Avoidance<S> {
         self.around(wanted, push, against)
     }
 
+    /// The same for a wanted velocity that leads straight on, whatever the map knows: the way home.
+    pub fn velocity_off_map(
+        &mut self,
+        wanted: Vector<S>,
+        proximity: &[u16; PROXIMITY_SENSORS],
+        heading: Vector<S>,
+        ticks: u32,
+    ) -> Vector<S> {
+        let push = self.push(proximity, heading, LONELY_PUSH_RANGE);
+        let against = push.dot(wanted);
+        if against >= S::ZERO {
+            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
+            return wanted + push;
+        }
+        self.around(wanted, push, against)
+    }
+
     /// The velocity around what pushes; `against` = push · wanted, negative.
     fn around(&mut self, wanted: Vector<S>, push: Vector<S>, against: S) -> Vector<S> {
         // How much of the wanted velocity leads to the left: the robot looks against the push.

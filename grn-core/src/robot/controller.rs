@@ -9,7 +9,7 @@ use super::localisation::{Localisation, Pose};
 use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Motion, PatternHere};
 use super::percept::{Command, NOMINAL_TICK_US, Percept, PerceptError};
-use super::position::millimetres;
+use super::position::{Millimetres, metres, millimetres};
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
 use crate::field::{Field, Morphogens};
@@ -136,6 +136,22 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
     /// [`PerceptError`] if no robot can perceive this. Then this was no tick: nothing has changed, and
     /// the robot is to stop its wheels.
     pub fn tick(&mut self, percept: &Percept) -> Result<Command, PerceptError> {
+        self.act(percept, None)
+    }
+
+    /// The same for a robot whose base station calls it home: it drives there, straight on and around what its proximity sensors
+    /// feel. Its genes rest meanwhile; it goes on to perceive and to tell, so that others make way for it. In any later tick
+    /// it may be called to another place, or go back to the pattern.
+    ///
+    /// # Errors
+    /// As of [`tick`](Self::tick).
+    pub fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, PerceptError> {
+        self.act(percept, Some(home))
+    }
+
+    // Not inlined: two copies of a tick would not fit beside each other into a small flash.
+    #[inline(never)]
+    fn act(&mut self, percept: &Percept, home: Option<Millimetres>) -> Result<Command, PerceptError> {
         percept.check()?;
         let pace = self.clock.advance(percept.elapsed_us);
         let pose = self.localisation.update(percept);
@@ -147,8 +163,15 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             return Ok(Command::default());
         };
         self.knowledge.update(percept, here, self.robot, now, self.swarm_velocity);
-        let wanted = self.wanted_velocity(here, percept, &pace);
-        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
+        let wanted = match home {
+            None => self.wanted_velocity(here, percept, &pace),
+            Some(home) => self.motion.velocity_to(metres(home) - here, &pace),
+        };
+        let (felt, ticks) = (&percept.proximity, pace.ticks);
+        let velocity = match home {
+            None => self.avoidance.velocity(wanted, felt, heading, here, &self.knowledge, ticks),
+            Some(_) => self.avoidance.velocity_off_map(wanted, felt, heading, ticks),
+        };
         let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
         Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })

@@ -121,6 +121,12 @@ impl<S: Scalar> Motion<S> {
         velocity.limited(self.cruise)
     }
 
+    /// The velocity to a place at this offset from the robot, metres per second, at most the cruise speed.
+    pub fn velocity_to(&self, offset: Vector<S>, pace: &Pace<S>) -> Vector<S> {
+        let Way { distance, direction } = self.way_to_target(offset);
+        (direction * (distance * pace.held(self.attraction))).limited(self.cruise)
+    }
+
     /// r/2: the longest Newton step that is believed.
     fn trust(&self) -> S {
         self.ring_radius.over_power_of_two(1)

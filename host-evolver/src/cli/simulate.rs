@@ -12,6 +12,7 @@ use crate::record;
 use crate::simulation::{
     self, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError, usual_config,
 };
+use firmware_sim::base_station::Dispatch;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::MAX_ROBOTS;
 use firmware_sim::scenario::Scenario;
@@ -330,6 +331,14 @@ pub fn table(simulation: &Simulation) -> String {
             "",
         ));
         rows.push(("then encircled, at least", percent(least), String::new(), ""));
+    }
+    if let Some(base) = &simulation.base {
+        let count = |what| base.dispatched.iter().filter(|deed| deed.what == what).count().to_string();
+        let needed = format!("{} needed", base.most_needed);
+        rows.push(("robots out at once, most", base.most_out.to_string(), needed, ""));
+        rows.push(("robots sent by the base", count(Dispatch::Sent), String::new(), ""));
+        rows.push(("robots called home", count(Dispatch::CalledHome), String::new(), ""));
+        rows.push(("base had too few for", format!("{:.0} s", base.short_s), String::new(), ""));
     }
     rows.push(("works", String::new(), String::new(), mark(verdict.works())));
     let mut text = format!("{:<28}{:>14}   {:<14}{}\n", "", "measured", "wanted", "met");

@@ -158,3 +158,50 @@ fn gene_expression_keeps_time_at_every_pace() {
         assert!((level(elapsed_us) - nominal).abs() < 0.02, "{elapsed_us} µs: {} {nominal}", level(elapsed_us));
     }
 }
+
+/// Where a robot is that was called to a place 1.5 m to the west for so many seconds, with something in the way.
+fn called_home<S: Scalar>(seconds: u32) -> [f64; 2] {
+    let mut robot = controller::<S>(0);
+    let [mut x, mut y, mut angle] = [0.0_f64, 0.0, 0.5];
+    for _ in 0..seconds * 32 {
+        let mut percept = target_ahead(Some(fix([x, y, angle], 0)), 31_250);
+        // A post, as thick as a robot, on the straight way.
+        for (sensor, bearing) in crate::robot::epuck2::PROXIMITY_BEARINGS_DEG.into_iter().enumerate() {
+            let (sin, cos) = libm::sincos(angle + f64::from(bearing).to_radians());
+            let (east, north) = (-0.7 - x, -y);
+            let (along, aside) = (east * cos + north * sin, east * sin - north * cos);
+            let free = along - (0.035f64 * 0.035 - aside * aside).max(0.0).sqrt() - 0.035;
+            if along > 0.0 && aside.abs() < 0.035 && free < 0.05 {
+                percept.proximity[sensor] = (free.max(0.0) * 1e4) as u16;
+            }
+        }
+        let Command { left, right, .. } = robot.tick_home(&percept, at(-1.5, 0.0)).unwrap();
+        let [left, right] = [left, right].map(|speed| f64::from(speed) * METRES_PER_STEP / 32.0);
+        angle += (right - left) / AXLE;
+        let (sin, cos) = libm::sincos(angle);
+        let way = (left + right) / 2.0;
+        (x, y) = (x + way * cos, y + way * sin);
+    }
+    [x, y]
+}
+
+#[test]
+fn a_robot_that_is_called_home_goes_around_what_is_in_its_way() {
+    let off = |[x, y]: [f64; 2]| libm::hypot(x + 1.5, y);
+    for place in [called_home::<f32>(60), called_home::<Q8_24>(60)] {
+        assert!(off(place) < 0.02, "{place:?}");
+    }
+    assert!(off(called_home::<f32>(2)) > 1.2, "it takes some time");
+}
+
+#[test]
+fn a_robot_that_was_called_home_goes_back_to_the_pattern() {
+    let mut robot = controller::<f32>(0);
+    let percept = target_ahead(Some(fix([0.0, 0.0, 0.0], 0)), 31_250);
+    let speeds = |command: Command| (command.left, command.right);
+    for _ in 0..32 {
+        robot.tick(&percept).unwrap();
+    }
+    assert!(speeds(robot.tick_home(&percept, at(-5.0, 0.0)).unwrap()) < (-100, -100));
+    assert!(speeds(robot.tick(&percept).unwrap()) > (100, 100));
+}

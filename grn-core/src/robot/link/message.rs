@@ -3,6 +3,7 @@
 use super::frame::{self, MAX_WIRE, TooLong};
 use crate::blob::Identity;
 use crate::robot::percept::{Command, Percept};
+use crate::robot::position::Millimetres;
 use crate::robot::slots::SlotStatus;
 use crate::scalar::NumberType;
 use heapless::{String, Vec};
@@ -49,6 +50,7 @@ requests! {
     RollBack = 8 -> (),
     Reset = 9 -> (),
     Percept = 10 -> Command,
+    Homeward = 11 -> Command,
 }
 
 /// Asks what the robot is. Begins a conversation.
@@ -109,6 +111,15 @@ pub struct RollBack {
 pub struct Reset {
     /// Number of the robot in its swarm.
     pub robot: u16,
+}
+
+/// A percept of a robot that its base station calls home.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Homeward {
+    /// Where it is to go.
+    pub home: Millimetres,
+    /// What it perceives.
+    pub percept: Percept,
 }
 
 /// What a robot is.

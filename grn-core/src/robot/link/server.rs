@@ -5,7 +5,7 @@
 
 use super::frame::{Frame, MAX_WIRE, Receiver, TooLong};
 use super::message::{
-    About, Activate, Begin, Chunk, Commit, Confirm, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request, Reset,
+    About, Activate, Begin, Chunk, Commit, Confirm, Homeward, Identify, LAST_FROZEN, REFUSED, RESPONSE, Request, Reset,
     RobotStatus, RollBack, Status, VERSION, decode_message, encode_message,
 };
 use super::refusal::Refusal;
@@ -13,6 +13,7 @@ use crate::blob::{Blob, FORMAT_VERSION, Identity};
 use crate::network::DEFAULT_GENES;
 use crate::robot::controller::Controller;
 use crate::robot::percept::{Command, Percept};
+use crate::robot::position::Millimetres;
 use crate::robot::slots::{Layout, MAX_BLOB, SlotError, Slots};
 use crate::scalar::{NumberType, Scalar};
 use embedded_storage::nor_flash::{NorFlash, NorFlashErrorKind};
@@ -81,6 +82,14 @@ impl<F: NorFlash, S: Scalar> Server<F, S> {
         self.robot.tick(percept)
     }
 
+    /// The same for a robot whose base station calls it home.
+    ///
+    /// # Errors
+    /// As of [`tick`](Self::tick).
+    pub fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, Refusal> {
+        self.robot.tick_home(percept, home)
+    }
+
     /// The flash as it is, giving up the robot.
     pub fn into_flash(self) -> F {
         self.robot.slots.into_flash()
@@ -111,6 +120,7 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
             RollBack::OPERATION => answer(frame, |RollBack { identity }| self.roll_back(identity)),
             Reset::OPERATION => answer(frame, |Reset { robot }| self.reset(robot)),
             Percept::OPERATION => answer(frame, |percept: Percept| self.tick(&percept)),
+            Homeward::OPERATION => answer(frame, |Homeward { home, percept }| self.tick_home(&percept, home)),
             _ => refuse(frame, Refusal::Unknown),
         }
     }
@@ -177,11 +187,27 @@ impl<F: NorFlash, S: Scalar> Robot<F, S> {
     fn tick(&mut self, percept: &Percept) -> Result<Command, Refusal> {
         let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
         let command = controller.tick(percept)?;
+        self.count_tick()?;
+        Ok(command)
+    }
+
+    #[inline(never)]
+    fn tick_home(&mut self, percept: &Percept, home: Millimetres) -> Result<Command, Refusal> {
+        let controller = self.controller.as_mut().ok_or(Refusal::NoController)?;
+        let command = controller.tick_home(percept, home)?;
+        self.count_tick()?;
+        Ok(command)
+    }
+
+    /// After enough ticks a blob on trial has proved itself.
+    fn count_tick(&mut self) -> Result<(), Refusal> {
         self.ticks = self.ticks.saturating_add(1);
-        if self.ticks == TRIAL_TICKS {
+        if self.ticks == TRIAL_TICKS
+            && let Some(controller) = &self.controller
+        {
             self.slots.confirm(controller.identity())?;
         }
-        Ok(command)
+        Ok(())
     }
 }
 

@@ -6,14 +6,16 @@ use crate::files::Contents;
 use crate::model::describe;
 use crate::model::notation::Digits;
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
+use firmware_sim::faults::{Absences, Fault};
 use firmware_sim::geometry::{Bounds, Polygon, Walls};
+use firmware_sim::lab::FaultKind;
 use firmware_sim::metrics::Bearings;
 use firmware_sim::scenario::{Course, Ring, Scenario, Scene};
 use firmware_sim::trace::{Frame, RobotState, Trace, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
 use grn_core::network::Network;
-use grn_core::robot::epuck2::BODY_RADIUS;
+use grn_core::robot::epuck2::{BODY_RADIUS, TICKS_PER_SECOND};
 use grn_figures::{FigureError, Window};
 use grn_optimisers::knee::Knee;
 
@@ -185,6 +187,43 @@ const INSTANTS: usize = 5;
 /// How many points the time series and trajectories have at most.
 const SAMPLES: usize = 600;
 
+/// Who is one of the swarm when, as in the metrics.
+struct Service {
+    broken: Absences,
+    at_base: Absences,
+}
+
+impl Service {
+    fn of(simulation: &Simulation) -> Service {
+        let mut at_base = Absences::default();
+        if let Some(base) = &simulation.base {
+            base.add_absences(simulation.config.lab.robots.count, &mut at_base);
+        }
+        Service { broken: simulation.faults.absences(), at_base }
+    }
+
+    fn has(&self, robot: usize, tick: u64) -> bool {
+        [&self.broken, &self.at_base].into_iter().all(|absences| absences.none_in(robot, tick..tick + 1))
+    }
+
+    /// The robots in service.
+    fn of_frame<'f>(&self, frame: &Frame<'f>) -> impl Iterator<Item = &'f RobotState> {
+        let tick = frame.tick;
+        frame.robots.iter().enumerate().filter(move |&(robot, _)| self.has(robot, tick)).map(|(_, state)| state)
+    }
+}
+
+/// The faults of a run and where robots were when they began; one that is late begins with the run and is none on the map.
+fn faults(simulation: &Simulation, frames: &[Frame<'_>]) -> Vec<grn_figures::Fault> {
+    let mark = |fault: &Fault| {
+        let place = frames.partition_point(|frame| frame.tick < fault.from);
+        let frame = frames.get(place).filter(|_| fault.kind != FaultKind::Late)?;
+        let position = pair(metres(frame.robots.get(fault.robot)?.position_um));
+        Some(grn_figures::Fault { time: fault.from as f64 / f64::from(TICKS_PER_SECOND), position })
+    };
+    simulation.faults.faults().iter().filter_map(mark).collect()
+}
+
 /// A run of the swarm: where the robots went, and how well they held the pattern.
 ///
 /// # Errors
@@ -204,11 +243,12 @@ pub fn run(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &B
     let radius = Some(simulation.ring_radius_m).filter(|radius| radius.is_finite());
     let window = window_around(trajectories.iter().flatten().copied(), radius.map(|radius| 1.5 * radius));
     let ruler = PatternRuler::new(blob, scenario).ok();
+    let service = Service::of(simulation);
     let course = trace.header().course(&world);
     let mut scene = Scene::of(scenario, 0.0);
     let mut radial_error = |seconds: f64, frame: &Frame<'_>| {
         scene.move_to(scenario, course.time_at(seconds));
-        median_error(frame, ruler.as_ref(), scene.walls())
+        median_error(frame, ruler.as_ref(), scene.walls(), &service)
     };
     grn_figures::trace(&grn_figures::TraceFigure {
         window,
@@ -216,9 +256,10 @@ pub fn run(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &B
         target_paths: paths(&world),
         trajectories,
         body_radius: BODY_RADIUS,
-        instants: instants(&frames, trace, scenario, blob, &course),
+        instants: instants(&frames, trace, scenario, blob, &course, &service),
+        faults: faults(simulation, &frames),
         times: sampled.iter().map(|(time, _)| *time).collect(),
-        gaps: gaps(&sampled, scenario.targets().len()),
+        gaps: gaps(&sampled, scenario.targets().len(), &service),
         radial_error: sampled.iter().map(|&(seconds, frame)| radial_error(seconds, frame)).collect(),
         radial_band: radius.map(|radius| ENOUGH_ACCURACY * radius),
     })
@@ -233,23 +274,23 @@ fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: Option<f64>) ->
 }
 
 /// `None` while the target is not there.
-fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<Option<f64>>> {
+fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize, service: &Service) -> Vec<Vec<Option<f64>>> {
     let mut bearings = Bearings::default();
     let mut gap = |frame: &Frame<'_>, target: usize| {
         let target = metres(frame.targets_um[target]?);
-        bearings.take(target, frame.robots.iter().map(|robot| metres(robot.position_um)));
+        bearings.take(target, service.of_frame(frame).map(|robot| metres(robot.position_um)));
         Some(bearings.largest_gap().to_degrees())
     };
     (0..targets).map(|target| sampled.iter().map(|(_, frame)| gap(frame, target)).collect()).collect()
 }
 
 /// `None` where no robot finds the pattern.
-fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>, walls: &Walls) -> Option<f64> {
+fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>, walls: &Walls, service: &Service) -> Option<f64> {
     let targets: Vec<_> = frame.targets_um.iter().flatten().map(|&target| metres(target)).collect();
     let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets, walls));
     // As in the metrics, an unknown distance is longer than any other.
     let known = |robot: &RobotState| distance(robot.position_um).unwrap_or(f64::INFINITY);
-    let mut errors: Vec<f64> = frame.robots.iter().map(known).collect();
+    let mut errors: Vec<f64> = service.of_frame(frame).map(known).collect();
     errors.sort_by(f64::total_cmp);
     errors.get(errors.len() / 2).copied().filter(|error| error.is_finite())
 }
@@ -260,6 +301,7 @@ fn instants(
     scenario: &Scenario,
     blob: &Blob,
     course: &Course,
+    service: &Service,
 ) -> Vec<grn_figures::Instant> {
     let Some(last) = frames.len().checked_sub(1) else { return Vec::new() };
     let seconds = trace.seconds(last).floor();
@@ -290,9 +332,11 @@ fn instants(
         robots: frames[place]
             .robots
             .iter()
-            .map(|robot| grn_figures::Pose {
+            .enumerate()
+            .map(|(number, robot)| grn_figures::Pose {
                 position: pair(metres(robot.position_um)),
                 heading: heading(robot.heading_q14),
+                in_service: service.has(number, frames[place].tick),
             })
             .collect(),
         targets: frames[place].targets_um.iter().flatten().map(|&target| pair(metres(target))).collect(),

@@ -208,7 +208,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         let t = f64::from(k) * seconds / instants;
         let pose = |i| {
             let (p, q) = (place(i, t), place(i, t + 0.1));
-            Pose { position: p, heading: libm::atan2(q[1] - p[1], q[0] - p[0]) }
+            Pose { position: p, heading: libm::atan2(q[1] - p[1], q[0] - p[0]), in_service: i != 3 || k < 2 }
         };
         Instant {
             time: t,
@@ -233,6 +233,7 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
         trajectories: (0..robots).map(|i| times.iter().map(|t| place(i, *t)).collect()).collect(),
         body_radius: 0.035,
         instants: (0..=instants as i32).map(instant).collect(),
+        faults: vec![Fault { time: 50.0, position: place(3, 50.0) }],
         gaps: (0..starts.len()).map(gap).collect(),
         radial_error: times.iter().enumerate().map(error).collect(),
         radial_band: Some(0.16),

@@ -47,6 +47,6 @@ pub use pattern::{Panel, PatternFigure, Target, pattern};
 #[cfg(feature = "png")]
 pub use png::{PngError, png};
 pub use rates::{RateGroup, RateRow, RatesFigure, rates};
-pub use trace::data::{Instant, Pose, TraceFigure};
+pub use trace::data::{Fault, Instant, Pose, TraceFigure};
 pub use trace::figure::trace;
 pub use tree::{SyntaxTree, tree};

@@ -144,11 +144,12 @@ proptest! {
         targets in 0_usize..9,
         band in proptest::option::of(value()),
         body_radius in value(),
+        faults in vec((0.0..1e4, at()), 0..9),
     ) {
         let times = steps.iter().scan(0.0, |time, step| { *time += step.0; Some(*time) }).collect();
         let instant = |(time, robots, targets, contours): (f64, Vec<([f64; 2], f64)>, _, _)| Instant {
             time,
-            robots: robots.into_iter().map(|(position, heading)| Pose { position, heading }).collect(),
+            robots: robots.into_iter().map(|(position, heading)| Pose { position, heading, in_service: heading < 5.0 }).collect(),
             targets,
             contours,
             walls: Vec::new(),
@@ -160,6 +161,7 @@ proptest! {
             trajectories,
             body_radius,
             instants: instants.into_iter().map(instant).collect(),
+            faults: faults.into_iter().map(|(time, position)| Fault { time, position }).collect(),
             times,
             gaps: (0..targets).map(|target| steps.iter().map(|step| Some(step.1[target])).collect()).collect(),
             radial_error: steps.iter().map(|step| step.2).collect(),

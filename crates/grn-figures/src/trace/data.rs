@@ -9,6 +9,8 @@ pub struct Pose {
     pub position: [f64; 2],
     /// Where it looks, radians anticlockwise from the x axis.
     pub heading: f64,
+    /// Whether it is one of the swarm: neither broken down nor at a base station.
+    pub in_service: bool,
 }
 
 /// A moment at which the map shows the swarm.
@@ -26,6 +28,15 @@ pub struct Instant {
     pub walls: Vec<Vec<[f64; 2]>>,
 }
 
+/// Something that went wrong with a robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fault {
+    /// When it began, seconds from the start.
+    pub time: f64,
+    /// Where the robot was then, metres.
+    pub position: [f64; 2],
+}
+
 /// A run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceFigure {
@@ -41,12 +52,14 @@ pub struct TraceFigure {
     pub body_radius: f64,
     /// The moments shown, in order of time.
     pub instants: Vec<Instant>,
+    /// What went wrong with robots, in order of time; of very many only the first are drawn.
+    pub faults: Vec<Fault>,
     /// Times of the series below the map, seconds, increasing.
     pub times: Vec<f64>,
-    /// For each target, at each time, the largest angle between neighbouring robots as the target sees them, degrees;
+    /// For each target, at each time, the largest angle between neighbouring robots in service as the target sees them, degrees;
     /// none while the target is not there.
     pub gaps: Vec<Vec<Option<f64>>>,
-    /// At each time, the median over robots of the distance to the pattern, metres; none where it is not known.
+    /// At each time, the median over robots in service of the distance to the pattern, metres; none where it is not known.
     pub radial_error: Vec<Option<f64>>,
     /// What counts as on the pattern: 10 % of its radius, metres; none for a pattern without one.
     pub radial_band: Option<f64>,

@@ -79,6 +79,8 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
     finite_lines("wall", &figure.walls)?;
     finite_lines("target path", &figure.target_paths)?;
     finite_lines("trajectory", &figure.trajectories)?;
+    let faults = figure.faults.iter().flat_map(|fault| [fault.time, fault.position[0], fault.position[1]]);
+    finite("fault", faults)?;
     for (index, instant) in figure.instants.iter().enumerate() {
         let named = |e: FigureError| e.within("instant", index);
         let poses = instant.robots.iter().flat_map(|r| [r.position[0], r.position[1], r.heading]);
@@ -92,16 +94,16 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canvas::style::time_colour;
+    use crate::canvas::style::{VERMILLION, time_colour};
     use crate::chart::check::read;
     use crate::chart::map::{Window, frame_look, wall_look};
-    use crate::trace::data::{Instant, Pose};
+    use crate::trace::data::{Fault, Instant, Pose};
 
     fn figure() -> TraceFigure {
         let ring: Vec<[f64; 2]> = vec![[4.0, 9.0], [6.0, 9.0], [5.0, 11.0]];
         let instant = |time: f64| Instant {
             time,
-            robots: vec![Pose { position: [4.0, 9.0], heading: 1.0 }],
+            robots: vec![Pose { position: [4.0, 9.0], heading: 1.0, in_service: true }],
             targets: vec![[5.0, 10.0]],
             contours: vec![ring.clone()],
             walls: Vec::new(),
@@ -113,6 +115,7 @@ mod tests {
             trajectories: vec![ring.clone()],
             body_radius: 0.035,
             instants: vec![instant(0.0), instant(40.0)],
+            faults: Vec::new(),
             times: vec![0.0, 20.0, 40.0],
             gaps: vec![vec![Some(300.0), Some(80.0), Some(60.0)], vec![Some(200.0), Some(100.0), Some(70.0)]],
             radial_error: vec![Some(0.8), Some(0.2), Some(0.05)],
@@ -141,6 +144,24 @@ mod tests {
         assert_ne!(wall_look().stroke, frame_look().stroke);
         let dashes = document.tags.iter().filter(|tag| tag.contains(&time_colour(0.0)) && tag.contains("dasharray"));
         assert!(dashes.count() > 0, "an earlier pattern is dashed");
+    }
+
+    #[test]
+    fn faults_and_robots_out_of_service_are_marked() {
+        let crosses = |figure: &TraceFigure| {
+            let document = read(&trace(figure).unwrap());
+            let lines = document.tags.iter().filter(|tag| tag.starts_with("line") && tag.contains(VERMILLION));
+            (lines.count() / 2, document.says("fault of a robot"), document.says("robot out of service"))
+        };
+        let mut figure = figure();
+        assert_eq!(crosses(&figure), (0, false, false));
+        figure.faults = [10.0, 30.0].map(|time| Fault { time, position: [4.0, 9.0] }).to_vec();
+        figure.instants[0].robots[0].in_service = false;
+        // Each on the map and in both series, and one in the legend.
+        assert_eq!(crosses(&figure), (2 * 3 + 1, true, true));
+        figure.faults = (0..501).map(|_| Fault { time: 10.0, position: [4.0, 9.0] }).collect();
+        assert_eq!(crosses(&figure).0, 500 * 3 + 1);
+        assert!(read(&trace(&figure).unwrap()).says("fault of a robot (first 500)"));
     }
 
     #[test]

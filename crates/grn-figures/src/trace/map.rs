@@ -2,13 +2,15 @@
 
 use crate::canvas::format::num;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{INK, LABEL, LIGHT, time_colour};
+use crate::canvas::style::{INK, LABEL, LIGHT, VERMILLION, time_colour};
 use crate::canvas::svg::Svg;
 use crate::chart::legend::Key;
 use crate::chart::map::{View, frame_look, wall_look};
 use crate::chart::place::Taken;
 use crate::trace::data::{Instant, TraceFigure};
 
+/// The most faults that are marked.
+pub(crate) const MOST_FAULTS: usize = 500;
 /// The least radius at which a robot is drawn, points.
 pub(crate) const SEEN: f64 = 1.9;
 
@@ -34,6 +36,16 @@ fn age(later: usize) -> &'static [f64] {
 /// How a target looks: unlike a robot in shape and lightness, whatever its colour.
 fn target_look() -> (Mark, f64, Paint) {
     (Mark::Diamond, 2.6, Paint::stroke(INK, 0.9).filled("#FFFFFF"))
+}
+
+/// How a robot looks; one out of service is hollow.
+fn robot_look(colour: &str, in_service: bool) -> Paint {
+    if in_service { Paint::stroke("#FFFFFF", 0.3).filled(colour) } else { Paint::stroke(colour, 0.7).filled("#FFFFFF") }
+}
+
+/// How a fault looks, on the map and in the series: a cross beside nothing else that is crossed.
+pub(crate) fn fault_look() -> (Mark, f64, Paint) {
+    (Mark::Cross, 2.4, Paint::stroke(VERMILLION, 1.1))
 }
 
 /// Draws the map.
@@ -69,7 +81,7 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
             let r = (figure.body_radius * view.scale).max(SEEN);
             let nose = (at.0 + 2.2 * r * libm::cos(robot.heading), at.1 - 2.2 * r * libm::sin(robot.heading));
             svg.line(at, nose, &Paint::stroke(&colour, 0.8));
-            svg.circle(at, r, &Paint::stroke("#FFFFFF", 0.3).filled(&colour));
+            svg.circle(at, r, &robot_look(&colour, robot.in_service));
             taken.add_mark(at, 3.5, 3.0);
             taken.add_line(at, nose, 3.0);
         }
@@ -88,6 +100,12 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
             let next = corners.iter().skip(1).chain(corners.first());
             corners.iter().zip(next).for_each(|(from, to)| taken.add_line(*from, *to, 2.0));
         }
+    }
+    for fault in figure.faults.iter().take(MOST_FAULTS) {
+        let at = view.place(fault.position);
+        let (mark, r, paint) = fault_look();
+        svg.mark(mark, at, r, &paint);
+        taken.add_mark(at, r, 2.0);
     }
     for instant in &figure.instants {
         time_label(svg, figure, instant, view, &mut taken);
@@ -145,12 +163,20 @@ pub(crate) fn entries(figure: &TraceFigure, enlarged: bool) -> Vec<(Key, &'stati
         (Key::Mark(Mark::Circle, SEEN, Paint::fill(&early)), if enlarged { "robot (enlarged)" } else { "robot" }),
         (Key::Line(Paint::stroke("#BDBDBD", 0.6)), "robot path"),
     ];
+    if figure.instants.iter().flat_map(|i| &i.robots).any(|robot| !robot.in_service) {
+        out.insert(1, (Key::Mark(Mark::Circle, SEEN, robot_look(&early, false)), "robot out of service"));
+    }
     if figure.instants.iter().any(|i| !i.contours.is_empty()) {
         out.push((Key::Line(Paint::stroke(INK, 0.9)), "pattern (dashed: earlier)"));
     }
     if figure.instants.iter().any(|i| !i.targets.is_empty()) {
         let (mark, r, paint) = target_look();
         out.push((Key::Mark(mark, r, paint), "target"));
+    }
+    if !figure.faults.is_empty() {
+        let (mark, r, paint) = fault_look();
+        let many = figure.faults.len() > MOST_FAULTS;
+        out.push((Key::Mark(mark, r, paint), if many { "fault of a robot (first 500)" } else { "fault of a robot" }));
     }
     if !figure.target_paths.is_empty() {
         out.push((Key::Line(Paint::stroke(INK, 0.6).dashed(&[2.5, 2.0])), "target path"));

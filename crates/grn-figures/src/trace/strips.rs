@@ -8,7 +8,7 @@ use crate::canvas::svg::{Svg, poly};
 use crate::canvas::text::width;
 use crate::chart::axes::{Axis, Chart, Line};
 use crate::trace::data::TraceFigure;
-use crate::trace::map::share;
+use crate::trace::map::{MOST_FAULTS, fault_look, share};
 
 /// The widest gap a ring without holes may show, degrees.
 const GAP_LIMIT: f64 = 90.0;
@@ -30,6 +30,7 @@ pub(crate) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<
     }
     moments(svg, figure, &first);
     first.draw(svg, &lines)?;
+    faults(svg, figure, &first);
     name_moments(svg, figure, &first);
     moments(svg, figure, &second);
     let mut lines: Vec<Line> = known(&figure.times, figure.radial_error.iter().copied())
@@ -38,6 +39,7 @@ pub(crate) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<
         .collect();
     lines.extend(figure.radial_band.map(|band| level(&second, band)));
     second.draw(svg, &lines)?;
+    faults(svg, figure, &second);
     note(svg, &first, GAP_LIMIT, "90°");
     if let Some(band) = figure.radial_band {
         note(svg, &second, band, "10 % of the radius");
@@ -113,6 +115,16 @@ fn moments(svg: &mut Svg, figure: &TraceFigure, chart: &Chart) {
         svg.line((x, y), (x, chart.rect.bottom()), &Paint::stroke(LIGHT, 0.8));
         let head = [(x, y + 0.5), (x - 2.6, y - 4.0), (x + 2.6, y - 4.0)];
         svg.path(&poly(&head, true), &Paint::fill(&colour));
+    }
+}
+
+/// Marks the times of faults, at the lower edge of a chart, where lines that are as they should be are far away.
+fn faults(svg: &mut Svg, figure: &TraceFigure, chart: &Chart) {
+    let (mark, r, paint) = fault_look();
+    for fault in figure.faults.iter().take(MOST_FAULTS).filter(|fault| (chart.x.lo..=chart.x.hi).contains(&fault.time))
+    {
+        let (x, _) = chart.place(fault.time, chart.y.lo);
+        svg.mark(mark, (x, chart.rect.bottom() - r - 0.6), r, &paint);
     }
 }
 

@@ -13,7 +13,7 @@ fn small() -> String {
     let text = edited(CAMPAIGN, "seeds = 1", "seeds = 3");
     let text = edited(&text, "evaluations = 800", "evaluations = 900");
     let text = edited(&text, "structure = 2", "structure = 2\nbaseline = true");
-    edited(&text, "[vary]\nlevel = [0.9, 1.1]\n", "")
+    edited(&text, "[vary]\nlevel = [0.9, 1.1]\n", "[simulate]\nrealities = 2\n")
 }
 
 fn written(desk: &Desk, text: &str) -> std::io::Result<PathBuf> {
@@ -42,11 +42,19 @@ fn a_campaign_killed_twenty_times_or_split_ends_like_one_left_alone() -> Outcome
     assert!(text(&output.stdout).contains("A12"));
     let expected = content(&alone)?;
     let has = |name: &str| expected.iter().any(|(path, _)| path == Path::new(name));
-    for name in ["results.csv", "summary.csv", "comparisons.csv", "transfers.csv", "f2.svg", "transfers.svg"] {
+    let tables =
+        ["results.csv", "summary.csv", "comparisons.csv", "transfers.csv", "simulations.csv", "simulation-summary.csv"];
+    for name in tables.into_iter().chain(["f2.svg", "transfers.svg", "simulations.svg"]) {
         assert!(has(name), "no {name}");
     }
     let results = text(&std::fs::read(alone.join("results.csv"))?);
     assert_eq!(results.lines().count(), 1 + 6);
+    let simulations = text(&std::fs::read(alone.join("simulations.csv"))?);
+    assert_eq!(simulations.lines().filter(|line| line.starts_with("world,") && line.contains(",ideal,2,")).count(), 6);
+    let parts = expected.iter().filter(|(path, _)| path.starts_with("simulations/world"));
+    let realities = parts.map(|(_, bytes)| text(bytes).lines().filter(|line| !line.starts_with('#')).count());
+    assert_eq!(realities.collect::<Vec<_>>(), [3; 6], "a header and two realities for each of six knees");
+    assert!(text(&output.stdout).contains("knees simulated in 2 realities of ideal each"), "{}", text(&output.stdout));
 
     let killed = desk.path("killed");
     let mut whole_runs = Vec::new();
@@ -90,6 +98,31 @@ fn variations_are_in_the_tables_and_not_in_the_figures() -> Outcome {
 }
 
 #[test]
+fn the_command_line_says_what_is_simulated_and_old_simulations_go() -> Outcome {
+    let desk = Desk::new()?;
+    let plan = written(&desk, &small().replace("seeds = 3", "seeds = 1"))?;
+    let out = desk.path("out");
+    let lines = |more: &[&str]| -> Result<(Vec<String>, usize), Box<dyn std::error::Error>> {
+        assert_done(&campaign(&plan, &out, more).output()?);
+        let simulations = text(&std::fs::read(out.join("simulations.csv"))?);
+        let parts = content(&out)?.into_iter().filter(|(path, _)| path.starts_with("simulations"));
+        Ok((simulations.lines().skip(1).map(str::to_owned).collect(), parts.count()))
+    };
+    let (planned, parts) = lines(&[])?;
+    assert_eq!((planned.len(), parts), (2, 2));
+    let (jammed, parts) = lines(&["--lab", "e-puck2-tracked", "--set", "radio.range_m=0.01", "--realities", "3"])?;
+    // Robots that hear nobody never learn where the target is.
+    assert!(jammed.iter().all(|line| line.contains(",e-puck2-tracked,3,0,0.0,")), "{jammed:?}");
+    assert_eq!(parts, 2, "those of the plan are gone");
+    assert_eq!(lines(&[])?, (planned, 2), "and come again");
+    let without =
+        written(&desk, &small().replace("[simulate]\nrealities = 2\n", "").replace("seeds = 3", "seeds = 1"))?;
+    assert_done(&campaign(&without, &out, &[]).output()?);
+    assert!(!out.join("simulations.csv").exists() && !out.join("simulations").exists());
+    Ok(())
+}
+
+#[test]
 fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     let desk = Desk::new()?;
     let refused = |text_of_file: &str, more: &[&str], words: &[&str]| -> Outcome {
@@ -113,6 +146,20 @@ fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     refused(&small().replace("clearance = 1.5", "clearance = 12.0"), &[], &["transfer[0].random.density", "no room"])?;
     refused(&small().replace("worlds = 3", "worlds = 3, depth = 1"), &[], &["campaign.toml", "depth"])?;
     refused(&small().replace("structure = 2", "structure = 2\ncolour = 1"), &[], &["campaign.toml", "colour"])?;
+    refused(&small().replace("realities = 2", "realities = 0"), &[], &["campaign.toml", "realities = 0", "from 1"])?;
+    refused(
+        &small().replace("realities = 2", "lab = \"moon\""),
+        &[],
+        &["campaign.toml", "simulate.lab = \"moon\"", "hostile"],
+    )?;
+    refused(&small().replace("realities = 2", "set = [\"radio.lost=1\"]"), &[], &["simulate.set[0]", "radio.loss?"])?;
+    refused(
+        &small().replace("realities = 2", "scale = 9.0"),
+        &[],
+        &["campaign.toml:", "simulate.scale = 9", "31.7 m", "scenario world"],
+    )?;
+    refused(&small(), &["--lab", "moon"], &["--lab", "moon", "hostile"])?;
+    refused(&small(), &["--set", "radio.loss=2"], &["--set radio.loss=2", "from 0 to 1"])?;
     refused(&small(), &["--shard", "3/2"], &["3/2", "2/3"])?;
     refused(&small(), &["--merge", "nowhere"], &["nowhere", "no such folder"])?;
 

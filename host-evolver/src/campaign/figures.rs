@@ -1,7 +1,7 @@
 //! The pictures of a campaign.
 
 use super::plan::{Plan, PlannedScenario, slug};
-use super::rows::{Measure, RunRow, TransferRow};
+use super::rows::{Measure, RunRow, SimulationSummary, TransferRow};
 use super::tables::Tables;
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
@@ -34,6 +34,10 @@ pub(super) fn draw(
     let rates = rates(plan, tables);
     if !rates.groups.is_empty() {
         pictures.add_pages("transfers", grn_figures::rates(&rates));
+    }
+    let simulated = simulated(&scenarios, tables);
+    if !simulated.groups.is_empty() {
+        pictures.add_pages("simulations", grn_figures::rates(&simulated));
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let world = World::new(planned.scenario.clone());
@@ -138,4 +142,21 @@ fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
         }
     }
     grn_figures::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() }
+}
+
+fn simulated(scenarios: &[&PlannedScenario], tables: &Tables) -> grn_figures::RatesFigure {
+    let group = |planned: &&PlannedScenario| {
+        let name = planned.scenario.name();
+        let rows: Vec<&SimulationSummary> = tables.simulated.iter().filter(|row| row.scenario == name).collect();
+        let title = format!("knees in {name}, laboratory {}", rows.first()?.laboratory);
+        let rows = rows.into_iter().map(|row| grn_figures::RateRow {
+            label: row.method.clone(),
+            successes: row.works as u64,
+            trials: (row.runs * row.realities) as u64,
+            interval: row.low.zip(row.high),
+        });
+        Some(grn_figures::RateGroup { title, rows: rows.collect() })
+    };
+    let groups = scenarios.iter().filter_map(group).collect();
+    grn_figures::RatesFigure { groups, x_label: "simulations that work, %".into() }
 }

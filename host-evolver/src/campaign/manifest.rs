@@ -8,7 +8,7 @@ use std::path::Path;
 const MANIFEST: &str = "manifest.json";
 
 /// Folders in a campaign's folder.
-pub(super) const BELOW: [&str; 3] = ["runs", "trials", "typical"];
+pub(super) const BELOW: [&str; 4] = ["runs", "simulations", "trials", "typical"];
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

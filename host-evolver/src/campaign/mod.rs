@@ -1,15 +1,18 @@
-//! Campaigns: scenarios x methods x seeds, and models tried in other worlds, with statistics.
+//! Campaigns: scenarios x methods x seeds, models tried in other worlds, and knees in simulated laboratories, with statistics.
 //!
-//! Every run and every world of trials is a unit of its own that is in the campaign's folder whole or not at all. So a
+//! Every run, every world of trials and every knee's simulations are a unit of its own that is in the campaign's folder whole or not at all. So a
 //! campaign can be stopped anywhere, resumed, split over machines and merged, and its tables come out the same: they are
 //! made from the files of the units alone.
 
 mod figures;
 mod manifest;
 mod method;
+mod part;
 mod plan;
 mod plan_file;
 mod rows;
+mod simulate;
+mod simulated;
 mod tables;
 mod trial;
 mod unit;
@@ -17,16 +20,19 @@ mod vary;
 
 pub use method::{Method, Outcome};
 pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
-pub use rows::{Comparison, Measure, RunRow, Summary, TransferRow};
+pub use rows::{Comparison, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
+pub use simulate::Simulate;
 pub use tables::Tables;
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 
 use crate::evaluation::World;
 use crate::files::{self, FileError, FolderLock};
+use crate::realities::Reality;
 use manifest::{BELOW, Manifest};
 use plan::slug;
 use rayon::prelude::*;
+use simulated::Knee;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -71,7 +77,7 @@ pub enum Stage {
         /// Runs of the plan.
         of: usize,
     },
-    /// All runs are there, trials are missing: it was stopped.
+    /// All runs are there, trials or simulations are missing: it was stopped.
     Trials,
     /// All units are there, and the tables are written.
     Done(Box<Tables>),
@@ -81,7 +87,7 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Stage::Runs { done, of } => write!(f, "{done} of {of} runs are there"),
-            Stage::Trials => write!(f, "all runs are there, some trials are not"),
+            Stage::Trials => write!(f, "all runs are there, some trials or simulations are not"),
             Stage::Done(_) => write!(f, "everything is there"),
         }
     }
@@ -135,7 +141,9 @@ impl Campaign {
         let knees = |from: &[String]| from.len() as u64 * self.plan.methods.len() as u64 * self.plan.seeds;
         let models = self.plan.models.len() as u64;
         let trials: u64 = self.plan.transfers.iter().map(|t| t.worlds.len() as u64 * (models + knees(&t.from))).sum();
-        runs as u64 + trials + models * self.plan.scenarios.len() as u64
+        let knees = Unit::all(&self.plan).len() as u64;
+        let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| knees * worth(simulate));
+        runs as u64 + trials + models * self.plan.scenarios.len() as u64 + simulations
     }
 
     /// Whether runs of another folder can be taken over into `folder`: before it is made, and before others are copied.
@@ -211,8 +219,9 @@ impl Campaign {
             return Ok(Stage::Runs { done, of: units.len() });
         }
         let Some(trials) = self.trials(stop, listener)? else { return Ok(Stage::Trials) };
+        let Some(simulations) = self.simulations(stop, listener)? else { return Ok(Stage::Trials) };
         let named = trials.iter().map(|(group, world, trials)| (group.as_str(), *world, trials.clone()));
-        let tables = Tables::of(&self.plan, self.folder(), named.collect())?;
+        let tables = Tables::of(&self.plan, self.folder(), named.collect(), &simulations)?;
         let mut contents = figures::draw(&self.plan, &tables, self.folder(), &|text| listener.notice(text))?;
         contents.extend(tables.contents());
         self.manifest.publish(self.folder(), &contents)?;
@@ -256,9 +265,29 @@ impl Campaign {
         let trials: Option<Vec<Tried>> = trials.into_iter().collect();
         if trials.is_some() {
             let wanted = places.iter().map(|(group, world)| group.path(*world)).collect();
-            trial::remove_others(self.folder(), &wanted)?;
+            part::remove_others(self.folder(), Path::new(trial::FOLDER), &wanted)?;
         }
         Ok(trials)
+    }
+
+    /// The realities of every run's knee, none if they are not to be simulated; `None` if stopped.
+    fn simulations(&self, stop: &AtomicBool, listener: &dyn Listener) -> Result<Option<Vec<Simulated>>, FileError> {
+        let knees = Knee::all(&self.plan, self.folder())?;
+        let simulated: Vec<Option<Simulated>> = knees
+            .par_iter()
+            .with_max_len(1)
+            .map(|knee| {
+                let realities = knee.realities(self.folder(), stop, &|text| listener.notice(text))?;
+                listener.done(self.plan.simulate.as_ref().map_or(0, worth));
+                Ok(realities.map(|realities| (knee.unit, realities)))
+            })
+            .collect::<Result<_, FileError>>()?;
+        let simulated: Option<Vec<Simulated>> = simulated.into_iter().collect();
+        if simulated.is_some() {
+            let wanted = knees.iter().map(Knee::path).collect();
+            part::remove_others(self.folder(), Path::new(simulated::FOLDER), &wanted)?;
+        }
+        Ok(simulated)
     }
 
     /// Returns whether the run is there, and not stopped.
@@ -299,6 +328,15 @@ impl Campaign {
     }
 }
 
+/// A run and the realities of its knee.
+type Simulated = (Unit, Vec<Reality>);
+
+/// What the simulations of a knee are worth, in evaluations of f2: they take about as long.
+fn worth(simulate: &Simulate) -> u64 {
+    const OF_REALITY: u64 = 500;
+    simulate.realities * OF_REALITY
+}
+
 /// A group, the number of a world in it, and the trials made there.
 type Tried = (String, usize, Vec<Trial>);
 
@@ -309,5 +347,10 @@ fn paths(plan: &Plan) -> Vec<PathBuf> {
     let names = plan.transfers.iter().map(|planned| planned.name.as_str());
     let names = names.chain(plan.scenarios.iter().map(|planned| planned.scenario.name()));
     let trials = names.map(|name| Path::new("trials").join(slug(name)).join("000-0123456789ab.csv"));
-    runs.chain(trials).collect()
+    let units = Unit::all(plan).into_iter().filter(|unit| plan.simulate.is_some() && unit.seed == plan.seeds);
+    let simulations = units.map(|unit| {
+        let folder = Path::new(simulated::FOLDER).join(slug(plan.scenarios[unit.scenario].scenario.name()));
+        folder.join(slug(&plan.methods[unit.method].name)).join("000-0123456789ab.csv")
+    });
+    runs.chain(trials).chain(simulations).collect()
 }

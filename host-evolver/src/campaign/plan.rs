@@ -1,6 +1,7 @@
 //! What a campaign is made of: scenarios, methods, models and transfers, and how many seeds.
 
 use super::method::Method;
+use super::simulate::Simulate;
 use firmware_sim::scenario::Scenario;
 use grn_core::network::Network;
 use grn_input::file_name;
@@ -19,6 +20,8 @@ pub struct Plan {
     pub models: Vec<PlannedModel>,
     /// Worlds that evolved models are tried in unchanged.
     pub transfers: Vec<PlannedTransfer>,
+    /// The laboratory that the knee of each run is simulated in, if it is.
+    pub simulate: Option<Simulate>,
 }
 
 /// A world with its budget.

@@ -2,6 +2,7 @@
 
 use super::method::Method;
 use super::plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer, slug};
+use super::simulate::SimulateTable;
 use super::vary::Variations;
 use crate::evaluation::Model;
 use crate::evolve::eh_grn::Structure;
@@ -51,6 +52,7 @@ pub(super) struct PlanFile {
     transfers: Vec<TransferTable>,
     #[serde(default)]
     vary: Variations,
+    simulate: Option<SimulateTable>,
 }
 
 #[derive(Deserialize)]
@@ -113,7 +115,7 @@ impl PlanFile {
     pub(super) fn checked(self, folder: &Path) -> Result<Plan, InputError> {
         check_name("name", &self.name)?;
         let seeds = SEEDS.check("seeds", self.seeds)? as u64;
-        let PlanFile { scenarios, methods, models, transfers, vary, .. } = self;
+        let PlanFile { scenarios, methods, models, transfers, vary, simulate, .. } = self;
         for (what, count) in [("scenario", scenarios.len()), ("method", methods.len())] {
             if count == 0 {
                 return Err(InputError::new(what, "", format!("at least one [[{what}]] is needed")));
@@ -132,7 +134,11 @@ impl PlanFile {
         let models = models.into_iter().enumerate().map(|(place, table)| planned_model(place, table, folder));
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let transfers = planned_transfers(transfers, &scenarios, &vary, folder)?;
-        let plan = Plan { name: self.name, seeds, scenarios, methods, models, transfers };
+        let simulate = simulate.map(|table| table.checked(folder)).transpose()?;
+        if let Some(simulate) = &simulate {
+            simulate.check(scenarios.iter().map(|planned| &planned.scenario))?;
+        }
+        let plan = Plan { name: self.name, seeds, scenarios, methods, models, transfers, simulate };
         check_work(&plan)?;
         Ok(plan)
     }

@@ -166,20 +166,84 @@ pub struct TransferRow {
     pub median_f2: f64,
 }
 
+/// What became of a run's knee in simulated laboratories: a line of `simulations.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulationRow {
+    /// Scenario evolved for, which it was simulated in.
+    pub scenario: String,
+    /// Method.
+    pub method: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// The laboratory.
+    pub laboratory: String,
+    /// Realities around it.
+    pub realities: usize,
+    /// In how many of them it works.
+    pub works: usize,
+    /// The same as a share.
+    pub rate: f64,
+    /// Lower end of Wilson's 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Median share of the time after forming in which every target was encircled; 0 where the swarm never formed, and for a knee
+    /// that cannot drive a robot.
+    pub encircled: f64,
+    /// Median radial error as a share of the ring's radius; where it is not known it is longer than any other, and nothing if
+    /// that is the median.
+    pub radial_error: Option<f64>,
+}
+
+/// All knees of a method in simulated laboratories: a line of `simulation-summary.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulationSummary {
+    /// Scenario.
+    pub scenario: String,
+    /// Method.
+    pub method: String,
+    /// The laboratory.
+    pub laboratory: String,
+    /// Knees that were simulated.
+    pub runs: usize,
+    /// Realities of each.
+    pub realities: usize,
+    /// Simulations that work.
+    pub works: usize,
+    /// The same as a share.
+    pub rate: f64,
+    /// Lower end of the 95 % interval, made as that of [`TransferRow::low`].
+    pub low: Option<f64>,
+    /// Upper end.
+    pub high: Option<f64>,
+}
+
+impl SimulationSummary {
+    /// The rate and its interval as a person reads them.
+    pub fn rate_words(&self) -> String {
+        rate_words(self.works, self.runs * self.realities, self.rate, self.low.zip(self.high))
+    }
+}
+
+/// `80.0 % (63.0 to 90.0)`; of a single trial `1 of 1`.
+fn rate_words(successes: usize, trials: usize, rate: f64, interval: Option<(f64, f64)>) -> String {
+    match interval {
+        Some((low, high)) if trials > 1 => {
+            format!("{:.1} % ({:.1} to {:.1})", 100.0 * rate, 100.0 * low, 100.0 * high)
+        }
+        _ => format!("{successes} of {trials}"),
+    }
+}
+
 impl TransferRow {
     /// Trials: runs times worlds.
     pub fn trials(&self) -> usize {
         self.runs * self.worlds
     }
 
-    /// The rate and its interval as a person reads them, `80.0 % (63.0 to 90.0)`; of a single trial `1 of 1`.
+    /// The rate and its interval as a person reads them.
     pub fn rate_words(&self) -> String {
-        match (self.low, self.high) {
-            (Some(low), Some(high)) if self.trials() > 1 => {
-                format!("{:.1} % ({:.1} to {:.1})", 100.0 * self.rate, 100.0 * low, 100.0 * high)
-            }
-            _ => format!("{} of {}", self.successes, self.trials()),
-        }
+        rate_words(self.successes, self.trials(), self.rate, self.low.zip(self.high))
     }
 }
 

@@ -1,14 +1,19 @@
 //! What a campaign says in numbers, made from the files of its units.
 
 use super::plan::Plan;
-use super::rows::{Comparison, INFEASIBLE, Measure, RunRow, Summary, TransferRow};
+use super::rows::{Comparison, INFEASIBLE, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
+use super::simulate::Simulate;
 use super::trial::Trial;
 use super::unit::Unit;
 use crate::evolve::{FrontMember, deployed, front_hypervolume};
 use crate::files::{self, Contents, FileError};
+use crate::realities::{Reality, Robustness};
 use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
 use std::collections::BTreeMap;
 use std::path::Path;
+
+const SIMULATIONS: &str = "simulations.csv";
+const SIMULATED: &str = "simulation-summary.csv";
 
 /// All tables of a campaign.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,18 +26,26 @@ pub struct Tables {
     pub comparisons: Vec<Comparison>,
     /// One line a transfer and source of models.
     pub transfers: Vec<TransferRow>,
+    /// One line a run, if knees were simulated.
+    pub simulations: Vec<SimulationRow>,
+    /// One line a scenario and method, if knees were simulated.
+    pub simulated: Vec<SimulationSummary>,
 }
 
 impl Tables {
-    /// The tables from the units in the folder, and from trials with their group's name and the world's number.
+    /// The tables from the units in the folder, from trials with their group's name and the world's number, and from realities.
     pub(super) fn of(
         plan: &Plan,
         campaign: &Path,
         trials: Vec<(&str, usize, Vec<Trial>)>,
+        simulations: &[(Unit, Vec<Reality>)],
     ) -> Result<Tables, FileError> {
         let runs =
             Unit::all(plan).into_iter().map(|unit| run_row(unit, plan, campaign)).collect::<Result<Vec<_>, _>>()?;
         let mut tables = Tables { transfers: transfer_rows(&trials), ..Tables::default() };
+        if let Some(simulate) = &plan.simulate {
+            (tables.simulations, tables.simulated) = simulation_rows(plan, simulate, simulations);
+        }
         for scenario in plan.scenarios.iter().map(|planned| planned.scenario.name()) {
             let rows_of = |method: &str| -> Vec<&RunRow> {
                 runs.iter().filter(|run| run.scenario == scenario && run.method == method).collect()
@@ -58,22 +71,30 @@ impl Tables {
         Ok(tables)
     }
 
-    /// `results.csv`, `summary.csv`, `comparisons.csv` and `transfers.csv`.
+    /// The files; those of simulations only if there are some.
     pub(super) fn contents(&self) -> Contents {
-        Contents::from([
+        let mut contents = Contents::from([
             ("results.csv".into(), files::csv_records(&self.runs)),
             ("summary.csv".into(), files::csv_records(&self.summaries)),
             ("comparisons.csv".into(), files::csv_records(&self.comparisons)),
             ("transfers.csv".into(), files::csv_records(&self.transfers)),
-        ])
+        ]);
+        if !self.simulations.is_empty() {
+            contents.insert(SIMULATIONS.into(), files::csv_records(&self.simulations));
+            contents.insert(SIMULATED.into(), files::csv_records(&self.simulated));
+        }
+        contents
     }
 
     pub(super) fn read(campaign: &Path) -> Result<Tables, FileError> {
+        let simulated = campaign.join(SIMULATED).exists();
         Ok(Tables {
             runs: files::read_csv(&campaign.join("results.csv"))?,
             summaries: files::read_csv(&campaign.join("summary.csv"))?,
             comparisons: files::read_csv(&campaign.join("comparisons.csv"))?,
             transfers: files::read_csv(&campaign.join("transfers.csv"))?,
+            simulations: if simulated { files::read_csv(&campaign.join(SIMULATIONS))? } else { Vec::new() },
+            simulated: if simulated { files::read_csv(&campaign.join(SIMULATED))? } else { Vec::new() },
         })
     }
 }
@@ -189,6 +210,59 @@ fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
         }
     };
     sources.iter().enumerate().map(row).collect()
+}
+
+fn simulation_rows(
+    plan: &Plan,
+    simulate: &Simulate,
+    simulations: &[(Unit, Vec<Reality>)],
+) -> (Vec<SimulationRow>, Vec<SimulationSummary>) {
+    let count = simulate.realities as usize;
+    let median = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
+        Robustness { realities: realities.to_vec() }.quantile(0.5, measure)
+    };
+    let row = |(unit, realities): &(Unit, Vec<Reality>)| {
+        // A knee that cannot drive a robot works nowhere.
+        let works = realities.iter().filter(|reality| reality.works).count();
+        let (low, high) = wilson(works, count);
+        let error = |reality: &Reality| reality.radial_error_share.unwrap_or(f64::INFINITY);
+        SimulationRow {
+            scenario: plan.scenarios[unit.scenario].scenario.name().into(),
+            method: plan.methods[unit.method].name.clone(),
+            seed: unit.seed,
+            laboratory: simulate.lab.name.clone(),
+            realities: count,
+            works,
+            rate: works as f64 / count as f64,
+            low,
+            high,
+            encircled: median(realities, &|reality| reality.encircled_share).unwrap_or(0.0),
+            radial_error: median(realities, &error).filter(|error| error.is_finite()),
+        }
+    };
+    // Runs come by scenario and method.
+    let groups = simulations.chunk_by(|(a, _), (b, _)| (a.scenario, a.method) == (b.scenario, b.method));
+    let summary = |group: &[(Unit, Vec<Reality>)]| {
+        let works = |realities: &[Reality]| match realities {
+            [] => vec![false; count],
+            realities => realities.iter().map(|reality| reality.works).collect(),
+        };
+        let succeeded: Vec<Vec<bool>> = group.iter().map(|(_, realities)| works(realities)).collect();
+        let works = succeeded.iter().flatten().filter(|&&works| works).count();
+        let (first, interval) = (group.first()?.0, interval(&succeeded));
+        Some(SimulationSummary {
+            scenario: plan.scenarios[first.scenario].scenario.name().into(),
+            method: plan.methods[first.method].name.clone(),
+            laboratory: simulate.lab.name.clone(),
+            runs: group.len(),
+            realities: count,
+            works,
+            rate: works as f64 / (group.len() * count) as f64,
+            low: interval.map(|ends| ends.0),
+            high: interval.map(|ends| ends.1),
+        })
+    };
+    (simulations.iter().map(row).collect(), groups.filter_map(summary).collect())
 }
 
 #[cfg(test)]

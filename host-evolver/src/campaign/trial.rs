@@ -1,5 +1,6 @@
 //! Models in worlds that they were not evolved for.
 
+use super::part;
 use super::plan::{Plan, slug};
 use super::unit::Unit;
 use crate::evaluation::{Evaluation, Evaluator, Model, World};
@@ -7,11 +8,10 @@ use crate::files::{self, FileError, read_blob};
 use firmware_sim::scenario::Scenario;
 use grn_core::network::Network;
 use serde::Deserialize;
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const FOLDER: &str = "trials";
+pub const FOLDER: &str = "trials";
 
 /// A model that is tried, and where it comes from.
 pub struct Candidate {
@@ -89,23 +89,11 @@ impl<'p> Group<'p> {
         stop: &AtomicBool,
         notice: &dyn Fn(&str),
     ) -> Result<Option<Vec<Trial>>, FileError> {
-        let origin = self.origin(world);
         let path = campaign.join(self.path(world));
-        if path.exists() {
-            // Whatever is not text of ours is damage like any other.
-            let text = std::fs::read(&path).map_err(|error| FileError::from_system(&path, "read", error))?;
-            let text = String::from_utf8_lossy(&text);
-            match files::unsealed(&text, &origin).and_then(|text| files::parse_csv(text).ok()) {
-                Some(trials) => return Ok(Some(trials)),
-                None => notice(&format!("{}: damaged, or of other trials: made anew", path.display())),
-            }
-        }
-        let Some(lines) = self.made(world, stop) else { return Ok(None) };
-        let text =
-            String::from_utf8_lossy(&files::csv(["scenario", "method", "seed", "f2", "violation"], lines)).into_owned();
-        files::write(&path, files::sealed(&text, &origin))?;
-        let trials = files::parse_csv(&text).map_err(|error| FileError::new(&path, error))?;
-        Ok(Some(trials))
+        part::read_or_make(&path, &self.origin(world), notice, || {
+            let lines = self.made(world, stop);
+            Ok(lines.map(|lines| files::csv(["scenario", "method", "seed", "f2", "violation"], lines)))
+        })
     }
 
     fn made(&self, world: usize, stop: &AtomicBool) -> Option<Vec<[String; 5]>> {
@@ -132,40 +120,10 @@ impl<'p> Group<'p> {
         text
     }
 
-    /// The name of a world's file tells what the trials were made from, so an old file is never taken for a new one.
+    /// The file of a world's trials.
     pub fn path(&self, world: usize) -> PathBuf {
-        let digest = files::sha256(self.origin(world));
-        Path::new(FOLDER).join(slug(self.name)).join(format!("{world:03}-{}.csv", &digest[..12]))
+        Path::new(FOLDER).join(slug(self.name)).join(part::name(world as u64, &self.origin(world)))
     }
-}
-
-/// Deletes the files of trials that are none of `wanted`, the trials of a campaign as it was before. A file without the name
-/// of such a file is somebody's and stays.
-///
-/// # Errors
-/// What the operating system says.
-pub fn remove_others(campaign: &Path, wanted: &HashSet<PathBuf>) -> Result<(), FileError> {
-    let folder = campaign.join(FOLDER);
-    if !folder.exists() {
-        return Ok(());
-    }
-    let is_trial = |name: &str| {
-        let parts = name.strip_suffix(".csv").and_then(|name| name.split_once('-'));
-        parts.is_some_and(|(world, digest)| {
-            let hexadecimal = digest.bytes().all(|byte| byte.is_ascii_hexdigit());
-            world.parse::<u64>().is_ok() && digest.len() == 12 && hexadecimal
-        })
-    };
-    for (group, _) in files::entries(&folder)?.into_iter().filter(|(_, entry)| entry.path().is_dir()) {
-        for (name, entry) in files::entries(&folder.join(&group))? {
-            let path = entry.path();
-            if is_trial(&name) && !wanted.contains(&Path::new(FOLDER).join(&group).join(&name)) {
-                std::fs::remove_file(&path).map_err(|error| FileError::from_system(&path, "removed", error))?;
-                files::remove_empty(campaign, &path);
-            }
-        }
-    }
-    Ok(())
 }
 
 fn given(plan: &Plan) -> Vec<Candidate> {

@@ -1,7 +1,8 @@
 //! `grn campaign`.
 
-use super::{Answer, Failure, interrupt, options, output, progress, this_command};
-use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Stage, Tables};
+use super::{Answer, Failure, conditions, interrupt, options, output, progress, robustness, this_command};
+use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Simulate, Stage, Tables};
+use firmware_sim::lab;
 use grn_input::file_name;
 use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
@@ -28,10 +29,40 @@ pub struct Arguments {
     /// Take over the runs of this folder first; may be given several times.
     #[arg(long, value_name = "DIR")]
     merge: Vec<PathBuf>,
+    /// Simulate the knee of each run in this laboratory, one of those that `grn lab` lists or a file [default: what the campaign
+    /// says in [simulate], if anything].
+    #[arg(long, value_name = "NAME|FILE")]
+    lab: Option<String>,
+    /// Replace one value of the laboratory, such as radio.loss=0.3; may be given several times.
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// In so many laboratories drawn around it [default: the campaign's, or 20].
+    #[arg(long, value_name = "N", value_parser = robustness::count, allow_hyphen_values = true)]
+    realities: Option<u64>,
+}
+
+impl Arguments {
+    /// What is simulated: what the campaign says, with what the command line says instead.
+    fn simulate(&self, planned: Option<Simulate>) -> Result<Option<Simulate>, Failure> {
+        if self.lab.is_none() && self.set.is_empty() && self.realities.is_none() {
+            return Ok(planned);
+        }
+        let mut simulate = planned.unwrap_or_default();
+        if let Some(lab) = &self.lab {
+            simulate.lab = lab::find(lab)?;
+        }
+        simulate.lab = conditions::set_all(simulate.lab, &self.set)?;
+        simulate.realities = self.realities.unwrap_or(simulate.realities);
+        Ok(Some(simulate))
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let plan = Plan::load(&arguments.file)?;
+    let mut plan = Plan::load(&arguments.file)?;
+    plan.simulate = arguments.simulate(plan.simulate.take())?;
+    if let Some(simulate) = &plan.simulate {
+        simulate.check(plan.scenarios.iter().map(|planned| &planned.scenario))?;
+    }
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
     arguments.merge.iter().try_for_each(|other| Campaign::check_merge(&plan, &folder, other))?;
@@ -128,6 +159,12 @@ fn text(tables: &Tables) -> String {
         let rows = rows.map(|row| [row.transfer.clone(), row.method.clone(), row.from.clone(), row.rate_words()]);
         text.push('\n');
         text += &columns(["tried in", "model", "evolved for", "success (95 % interval)"], rows);
+    }
+    if let Some(first) = tables.simulated.first() {
+        let rows = tables.simulated.iter();
+        let rows = rows.map(|row| [row.scenario.clone(), row.method.clone(), row.runs.to_string(), row.rate_words()]);
+        text += &format!("\nknees simulated in {} realities of {} each\n", first.realities, first.laboratory);
+        text += &columns(["scenario", "method", "knees", "works (95 % interval)"], rows);
     }
     text
 }

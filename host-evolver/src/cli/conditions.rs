@@ -17,12 +17,15 @@ pub struct Conditions {
 impl Conditions {
     /// The laboratory that was asked for.
     pub fn laboratory(&self) -> Result<Laboratory, Failure> {
-        let found = lab::find(&self.lab)?;
-        let set = |laboratory, assignment: &String| {
-            lab::set(laboratory, assignment).map_err(|error| in_set(assignment, error))
-        };
-        self.set.iter().try_fold(found, set)
+        set_all(lab::find(&self.lab)?, &self.set)
     }
+}
+
+/// A laboratory with these values replaced.
+pub fn set_all(laboratory: Laboratory, assignments: &[String]) -> Result<Laboratory, Failure> {
+    let set =
+        |laboratory, assignment: &String| lab::set(laboratory, assignment).map_err(|error| in_set(assignment, error));
+    assignments.iter().try_fold(laboratory, set)
 }
 
 fn in_set(assignment: &str, error: InputError) -> Failure {

@@ -9,6 +9,7 @@
 //! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
 mod ailments;
+mod part;
 mod placement;
 mod unit;
 
@@ -30,6 +31,7 @@ use core::ops::ControlFlow;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_input::InputError;
+use part::{CROWD, Numbered, PART, Part};
 use rayon::prelude::*;
 use unit::{Surroundings, Unit};
 
@@ -77,11 +79,6 @@ impl core::error::Error for StepError {
     }
 }
 
-/// From so many robots on it pays to let several threads think for them.
-const CROWD: usize = 256;
-/// Robots that a thread thinks for at a time.
-const CROWD_PART: usize = 64;
-
 /// A swarm in a world. All lengths in real metres.
 pub struct Swarm<B> {
     config: SwarmConfig,
@@ -96,6 +93,7 @@ pub struct Swarm<B> {
     tracker: Tracker,
     ring: ProximityRing,
     units: Vec<Unit<B>>,
+    parts: Vec<Part>,
     poses: Vec<Pose>,
     /// Where robots were at the beginning of the frame.
     positions: Vec<Point<f64>>,
@@ -186,13 +184,14 @@ impl<B: Brain> Swarm<B> {
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
         let unit = |(robot, faults)| Unit::new(robot, brain(robot), &config, faults, &tracker, &ether, samples.len());
-        let units = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
+        let units: Vec<Unit<B>> = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
         let mut swarm = Swarm {
             wall_index: WallIndex::new(scene.walls(), WALL_REACH),
             course: Course::of(&world, &config),
             scene,
             fixed_samples: samples.len(),
             ring: ProximityRing::new(&lab.proximity),
+            parts: units.chunks(PART).map(|_| Part::default()).collect(),
             units,
             positions: poses.iter().map(|pose| pose.position).collect(),
             poses,
@@ -206,7 +205,7 @@ impl<B: Brain> Swarm<B> {
             tick: 0,
             carried: faults.faults().iter().filter(|fault| fault.kind == FaultKind::Carried).rev().copied().collect(),
             faults,
-            recorded: Recorded::default(),
+            recorded: Recorded { robots: vec![RobotState::default(); n], ..Recorded::default() },
             world,
             config,
         };
@@ -303,11 +302,9 @@ impl<B: Brain> Swarm<B> {
         self.ether.begin(self.tick, &self.positions);
         self.think_and_drive()?;
         self.near.clear();
-        for (robot, unit) in (0u16..).zip(&self.units) {
-            if let Some(letter) = &unit.letter {
-                self.ether.send(usize::from(robot), letter);
-            }
-            self.near.extend(unit.near.iter().filter(|&&other| robot < other).map(|&other| (robot, other)));
+        for part in &self.parts {
+            part.letters.iter().for_each(|(robot, letter)| self.ether.send(usize::from(*robot), letter));
+            self.near.extend_from_slice(&part.near);
         }
         let solid = Solid {
             walls: self.scene.walls(),
@@ -354,15 +351,18 @@ impl<B: Brain> Swarm<B> {
             ring: &self.ring,
             ether: &self.ether,
         };
-        let one = |(robot, (unit, pose)): (usize, (&mut Unit<B>, &mut Pose))| {
-            unit.frame(pose, &around).map_err(|source| StepError { robot, tick: around.frame, source })
+        let one = |(number, (part, ((units, poses), states))): Numbered<'_, B>| {
+            part.frame(number * PART, units, poses, states, &around)
         };
+        let states = &mut self.recorded.robots;
         if self.units.len() < CROWD {
-            return self.units.iter_mut().zip(&mut self.poses).enumerate().try_for_each(one);
+            let robots = self.units.chunks_mut(PART).zip(self.poses.chunks_mut(PART)).zip(states.chunks_mut(PART));
+            return self.parts.iter_mut().zip(robots).enumerate().try_for_each(one);
         }
-        let robots = self.units.par_iter_mut().zip(self.poses.par_iter_mut()).enumerate().with_min_len(CROWD_PART);
+        let robots = self.units.par_chunks_mut(PART).zip(self.poses.par_chunks_mut(PART));
+        let parts = self.parts.par_iter_mut().zip(robots.zip(states.par_chunks_mut(PART))).enumerate();
         // Whoever fails first in time, the one with the lowest number is named.
-        robots.filter_map(|robot| one(robot).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
+        parts.filter_map(|part| one(part).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
     }
 
     /// Targets and walls as they are in this frame.
@@ -382,15 +382,12 @@ impl<B: Brain> Swarm<B> {
 
     fn record(&mut self, contacts: ContactCounts) {
         let um = |p: Point<f64>| [micrometres(p.x), micrometres(p.y)];
-        let robots = self.poses.iter().zip(&self.units).map(|(pose, unit)| RobotState {
-            position_um: um(pose.position),
-            heading_q14: [unit_q14(pose.heading.x), unit_q14(pose.heading.y)],
-            wheels: unit.wheels,
-        });
         self.recorded.targets_um.clear();
         self.recorded.targets_um.extend(self.scene.targets().iter().map(|target| target.map(um)));
-        self.recorded.robots.clear();
-        self.recorded.robots.extend(robots);
+        for (state, pose) in self.recorded.robots.iter_mut().zip(&self.poses) {
+            state.position_um = um(pose.position);
+            state.heading_q14 = [unit_q14(pose.heading.x), unit_q14(pose.heading.y)];
+        }
         self.recorded.contacts = contacts;
     }
 }

@@ -146,7 +146,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             self.localisation.drive(0, 0);
             return Ok(Command::default());
         };
-        self.knowledge.update(percept, here, self.robot, now, self.swarm_velocity);
+        self.knowledge.update(percept, here, self.robot, [now, pace.ticks], self.swarm_velocity);
         let wanted = self.wanted_velocity(here, percept, &pace);
         let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, here, &self.knowledge, pace.ticks);
         let (left, right) = self.drive.wheels(velocity, heading, &pace);

@@ -41,6 +41,8 @@ class Swarm:
 
     def __init__(self, blob: grn.Blob, scenario: grn.Scenario, lab: Lab, start: grn.Simulation, seed: int, speed: float):
         known(lab)
+        if scenario.walls_change or scenario.changes:
+            raise SystemExit(f"{scenario.name}: walls that move and targets that come and go are not built in MuJoCo")
         self.lab, self.speed = lab, speed
         self.scenario = scenario.scaled(blob.scale)
         self.reach = REACH * blob.scale
@@ -63,10 +65,11 @@ class Swarm:
             lab["bodies"]["target_radius_m"],
         )
         self.bearings = [math.radians(bearing) for bearing in lab["proximity"]["bearings_deg"]]
-        self.travel = self.scenario.longest_path / speed
+        self.travel = self.scenario.travel_s(speed)
 
     def targets(self, now: float) -> list[Place]:
-        return self.scenario.targets_at(min(1.0, max(0.0, now - SETTLE) / self.travel) if self.travel else 0.0)
+        share = min(1.0, max(0.0, now - SETTLE) / self.travel) if self.travel else 0.0
+        return [place for place in self.scenario.targets_at(share) if place is not None]
 
     def run(self, watch: Optional[Callable[[float], None]] = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions, targets and contacts of every 1/32 s until all targets have arrived."""

@@ -120,7 +120,10 @@ def build(
             solid = {"group": str(SOLID), "contype": "2", "conaffinity": "2", "friction": "0.3 0 0"}
             ElementTree.SubElement(world, "geom", box, **solid, name=f"wall-{number}-{edge}", type="box")
     if target_radius > 0.0:
-        for number, (x, y) in enumerate(scenario.targets_at(0.0)):
+        for number, place in enumerate(scenario.targets_at(0.0)):
+            if place is None:
+                continue
+            x, y = place
             body = ElementTree.SubElement(world, "body", name=f"target-{number}", mocap="true", pos=f"{x} {y} 0.05")
             size = {"type": "cylinder", "size": f"{target_radius} 0.05", "group": str(SOLID)}
             ElementTree.SubElement(body, "geom", size, contype="2", conaffinity="2", friction="0.3 0 0")

@@ -13,7 +13,8 @@ pub struct SwarmConfig {
     /// Real metres per metre of the scenario, in (0, 10]; the scaled region must fit a message's ±32.767 m.
     pub scale: f64,
     /// Real speed of the target with the longest path, metres per second, in (0, 0.127] (what a message can tell); the
-    /// others are slower in proportion, so that all arrive together.
+    /// others are slower in proportion, so that all arrive together. In a world whose targets have times of their own, or whose
+    /// walls move, the greatest speed of anything; without effect in one that says how long it takes itself.
     pub target_speed_m_per_s: f64,
     /// How long the targets rest at their starts while the pattern forms, seconds, 0..=3600.
     pub settle_s: f64,

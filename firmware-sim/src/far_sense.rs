@@ -57,11 +57,17 @@ impl FarSense {
         FarSense { queue: std::vec::Vec::with_capacity(samples), next: 0 }
     }
 
-    /// What the eye sees of these targets and wall samples.
-    pub fn look(&mut self, eye: &Eye, targets: &[Point<f64>], samples: &[Point<f64>], stream: &mut Stream) -> Seen {
+    /// What the eye sees of these targets, those that are there, and wall samples.
+    pub fn look(
+        &mut self,
+        eye: &Eye,
+        targets: &[Option<Point<f64>>],
+        samples: &[Point<f64>],
+        stream: &mut Stream,
+    ) -> Seen {
         let mut look = Seen::default();
         let (position, limit) = (eye.position, eye.range * eye.range);
-        for (number, &target) in (0u8..).zip(targets) {
+        for (number, target) in (0u8..).zip(targets).filter_map(|(number, &target)| Some((number, target?))) {
             if length_squared(target - position) <= limit {
                 let seen = Sighting { target: number, position: eye.seen(target, stream) };
                 // A scenario has no more targets than a percept has room for.
@@ -78,7 +84,10 @@ impl FarSense {
         while let Some(&(_, index)) = self.queue.get(self.next)
             && !look.obstacles.is_full()
         {
-            let _ = look.obstacles.push(eye.seen(samples[index as usize], stream));
+            // Of walls that come and go there may be fewer samples than when she began this round.
+            if let Some(&sample) = samples.get(index as usize) {
+                let _ = look.obstacles.push(eye.seen(sample, stream));
+            }
             self.next += 1;
         }
         look
@@ -100,7 +109,9 @@ mod tests {
     #[test]
     fn what_a_mother_sees_is_off_by_her_own_pose() {
         let error = PoseError { position: Vector::new(0.1, -0.2), heading: 0.05 };
-        let look = FarSense::new(0).look(&Eye { error, ..EYE }, &[Vector::new(3.0, 2.0)], &[], &mut stream());
+        let look =
+            FarSense::new(0).look(&Eye { error, ..EYE }, &[None, Some(Vector::new(3.0, 2.0))], &[], &mut stream());
+        assert_eq!((look.targets.len(), look.targets[0].target), (1, 1));
         // Moved by the error, and turned about her by atan(0.05).
         let turned = 2.0 / (1.0f64 + 0.0025).sqrt();
         let expected = [1.1 + turned, 1.8 + turned * 0.05].map(|metres| (metres * 1e3).round() as i16);
@@ -109,7 +120,7 @@ mod tests {
 
     #[test]
     fn mothers_see_targets_in_range_and_every_wall_point_in_turn() {
-        let targets = [Vector::new(3.0, 2.0), Vector::new(9.0, 2.0)];
+        let targets = [Some(Vector::new(3.0, 2.0)), Some(Vector::new(9.0, 2.0))];
         let samples: Vec<Point<f64>> = (0..40).map(|i| Vector::new(1.0 + f64::from(i) * 0.25, 3.0)).collect();
         let mut sense = FarSense::new(samples.len());
         let mut seen = Vec::new();

@@ -2,12 +2,12 @@
 
 mod nearest;
 mod polygon;
+mod walls;
 
 pub use polygon::{Polygon, PolygonError};
+pub use walls::Walls;
 
-use grn_core::field::Obstacles;
 use grn_core::geometry::{Point, Vector};
-use nearest::NearestEdges;
 
 /// |v|², without the square root.
 pub fn length_squared(v: Vector<f64>) -> f64 {
@@ -177,99 +177,6 @@ pub fn convex_hull(points: &[Point<f64>]) -> Vec<Point<f64>> {
     chain(&mut sorted.iter().copied());
     chain(&mut sorted.iter().rev().copied());
     hull
-}
-
-/// Solid obstacles: a set of polygons, which may touch and overlap.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Walls {
-    polygons: Vec<Polygon>,
-    nearest: Option<NearestEdges>,
-}
-
-impl Walls {
-    /// These polygons.
-    pub fn new(polygons: Vec<Polygon>) -> Self {
-        Walls { nearest: NearestEdges::of(&polygons), polygons }
-    }
-
-    /// The polygons, in the scenario's order.
-    pub fn polygons(&self) -> &[Polygon] {
-        &self.polygons
-    }
-
-    /// The walls with every coordinate multiplied by a positive finite `factor`.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Walls {
-        Walls::new(self.polygons.iter().map(|polygon| polygon.scaled(factor)).collect())
-    }
-
-    /// Is there no wall at all?
-    pub fn is_empty(&self) -> bool {
-        self.polygons.is_empty()
-    }
-
-    /// The smallest box around all walls, or `None` without walls.
-    pub fn bounds(&self) -> Option<Bounds> {
-        self.polygons.iter().map(Polygon::bounds).reduce(Bounds::joined)
-    }
-
-    /// Which wall holds the point; the first, if several do.
-    pub fn containing(&self, point: Point<f64>) -> Option<usize> {
-        self.polygons.iter().position(|polygon| polygon.contains(point))
-    }
-
-    /// Distance to the nearest wall's outline: negative inside a wall (the deepest counts), infinite without walls.
-    pub fn signed_distance(&self, point: Point<f64>) -> f64 {
-        if let Some((_, squared)) = self.nearest.as_ref().and_then(|nearest| nearest.nearest_outside(point)) {
-            return squared.sqrt();
-        }
-        let inside = self.polygons.iter().filter(|polygon| polygon.contains(point));
-        let depth = inside.map(|polygon| polygon.nearest_boundary(point).1).reduce(f64::max);
-        match depth {
-            Some(squared) => -squared.sqrt(),
-            None => self.nearest_boundary(point).map_or(f64::INFINITY, |(_, squared)| squared.sqrt()),
-        }
-    }
-
-    /// The point of any outline nearest to `point` and the squared distance to it, or `None` without walls.
-    pub fn nearest_boundary(&self, point: Point<f64>) -> Option<(Point<f64>, f64)> {
-        if let Some(best) = self.nearest.as_ref().and_then(|nearest| nearest.nearest(point)) {
-            return Some(best);
-        }
-        let mut best: Option<(Point<f64>, f64)> = None;
-        for polygon in &self.polygons {
-            if best.is_some_and(|(_, squared)| polygon.bounds().distance_squared(point) >= squared) {
-                continue;
-            }
-            let candidate = polygon.nearest_boundary(point);
-            if best.is_none_or(|(_, squared)| candidate.1 < squared) {
-                best = Some(candidate);
-            }
-        }
-        best
-    }
-
-    /// Distance along the ray from `origin` in the unit `direction` to the first outline, if within `reach`.
-    pub fn ray(&self, origin: Point<f64>, direction: Vector<f64>, reach: f64) -> Option<f64> {
-        let near = self.polygons.iter().filter(|p| p.bounds().distance_squared(origin) <= reach * reach);
-        let hits = near.flat_map(Polygon::edges).filter_map(|edge| edge.ray(origin, direction));
-        hits.reduce(f64::min).filter(|&distance| distance <= reach)
-    }
-
-    /// Points on every outline, wall by wall, every `spacing` metres of arc length from each wall's first vertex.
-    pub fn boundary_samples(&self, spacing: f64) -> Vec<Point<f64>> {
-        self.polygons.iter().flat_map(|polygon| polygon.boundary_samples(spacing)).collect()
-    }
-}
-
-impl Obstacles<f64> for Walls {
-    fn offset_from_nearest(&self, point: Point<f64>) -> Option<Vector<f64>> {
-        if let Some((boundary, _)) = self.nearest.as_ref().and_then(|nearest| nearest.nearest_outside(point)) {
-            return Some(point - boundary);
-        }
-        let (boundary, _) = self.nearest_boundary(point)?;
-        Some(if self.containing(point).is_some() { Vector::ZERO } else { point - boundary })
-    }
 }
 
 #[cfg(test)]

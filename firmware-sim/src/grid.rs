@@ -1,6 +1,6 @@
 //! Who is near: a uniform grid of robots, rebuilt each tick without allocating, and a fixed grid of wall edges.
 
-use crate::geometry::{Bounds, Edge, Walls, length_squared};
+use crate::geometry::{Bounds, Edge, Polygon, Walls, length_squared};
 use grn_core::geometry::{Point, Vector};
 
 /// The most cells a side of a small swarm's grid; a swarm spread wider gets larger cells.
@@ -83,6 +83,7 @@ impl Grid {
         }
     }
 
+    #[inline]
     fn column_row(&self, position: Point<f64>) -> (usize, usize) {
         // By way of i32, to which floating-point numbers are converted in fewer instructions.
         let cell = |metres: f64, cells: usize| ((metres * self.per_cell) as i32).clamp(0, cells as i32 - 1) as usize;
@@ -97,7 +98,7 @@ impl Grid {
         let (column, row) = self.column_row(position);
         let first = column.saturating_sub(1);
         let last = (column + 1).min(self.columns - 1);
-        for row in row.saturating_sub(1)..=(row + 1).min(self.rows - 1) {
+        for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
             let from = self.starts[row * self.columns + first] as usize;
             let range = from..self.starts[row * self.columns + last + 1] as usize;
             let (xs, ys, robots) = (&self.xs[range.clone()], &self.ys[range.clone()], &self.robots[range]);
@@ -120,15 +121,17 @@ impl Grid {
     }
 }
 
-/// Wall edges by the cells they can be felt from.
+/// Wall edges by the cells they can be felt from; those of walls that may move are kept apart.
 #[derive(Debug)]
 pub struct WallIndex {
+    reach: f64,
     low: Point<f64>,
     per_cell: f64,
     columns: usize,
     rows: usize,
     starts: Vec<u32>,
     edges: Vec<Edge>,
+    moving: Vec<(Bounds, Vec<Edge>)>,
 }
 
 impl WallIndex {
@@ -137,9 +140,18 @@ impl WallIndex {
 
     /// An index of the edges within `reach` metres.
     pub fn new(walls: &Walls, reach: f64) -> Self {
-        let mut index =
-            WallIndex { low: Vector::ZERO, per_cell: 0.0, columns: 0, rows: 0, starts: vec![0], edges: Vec::new() };
-        let Some(bounds) = walls.bounds() else { return index };
+        let mut index = WallIndex {
+            reach,
+            low: Vector::ZERO,
+            per_cell: 0.0,
+            columns: 0,
+            rows: 0,
+            starts: vec![0],
+            edges: Vec::new(),
+            moving: Vec::new(),
+        };
+        index.set_moving(walls);
+        let Some(bounds) = walls.fixed().iter().map(Polygon::bounds).reduce(Bounds::joined) else { return index };
         let margin = Vector::new(reach, reach);
         index.low = bounds.low - margin;
         let extent = bounds.high + margin - index.low;
@@ -149,7 +161,7 @@ impl WallIndex {
         index.rows = (extent.y * index.per_cell) as usize + 1;
         // No point of a cell is farther from its centre than half the diagonal, here rounded up.
         let limit = reach + cell * 0.71;
-        let all: Vec<Edge> = walls.polygons().iter().flat_map(|polygon| polygon.edges().iter().copied()).collect();
+        let all: Vec<Edge> = walls.fixed().iter().flat_map(|polygon| polygon.edges().iter().copied()).collect();
         for row in 0..index.rows {
             for column in 0..index.columns {
                 let centre = index.low + Vector::new(column as f64 + 0.5, row as f64 + 0.5) * cell;
@@ -161,9 +173,23 @@ impl WallIndex {
         index
     }
 
+    /// Takes the moving walls as they are now; the fixed ones must be those that it was made for.
+    pub fn set_moving(&mut self, walls: &Walls) {
+        let margin = Vector::new(self.reach, self.reach);
+        let felt_in = |bounds: Bounds| Bounds { low: bounds.low - margin, high: bounds.high + margin };
+        self.moving.clear();
+        self.moving.extend(walls.moving().iter().map(|wall| (felt_in(wall.bounds()), wall.edges().to_vec())));
+    }
+
     /// Every edge within the index's reach of `position`, and perhaps others.
     #[inline]
-    pub fn near(&self, position: Point<f64>) -> &[Edge] {
+    pub fn near(&self, position: Point<f64>) -> impl Iterator<Item = &Edge> {
+        let moving = self.moving.iter().filter(move |(felt_in, _)| felt_in.contains(position));
+        self.near_fixed(position).iter().chain(moving.flat_map(|(_, edges)| edges))
+    }
+
+    #[inline]
+    fn near_fixed(&self, position: Point<f64>) -> &[Edge] {
         let x = (position.x - self.low.x) * self.per_cell;
         let y = (position.y - self.low.y) * self.per_cell;
         if !(x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64) {
@@ -213,22 +239,22 @@ mod tests {
     #[test]
     fn the_index_misses_no_edge_within_reach() {
         let text = include_str!("../../scenarios/compound-channel.toml");
-        let walls = Scenario::parse(text).unwrap().scaled(0.25).walls().clone();
+        let walls = Scenario::parse(text).unwrap().scaled(0.25).fixed_walls().clone();
         let index = WallIndex::new(&walls, 0.1);
         let mut stream = Stream::new(4, Component::Placement, 0);
         let (mut near, mut empty) = (0, 0);
         for _ in 0..20_000 {
             let p = Vector::new(stream.unit() * 8.0 - 0.5, stream.unit() * 8.0 - 0.5);
-            let candidates = index.near(p);
+            let candidates: Vec<&Edge> = index.near(p).collect();
             empty += usize::from(candidates.is_empty());
-            for edge in walls.polygons().iter().flat_map(|polygon| polygon.edges()) {
+            for edge in walls.polygons().flat_map(|polygon| polygon.edges()) {
                 if length_squared(edge.nearest(p) - p) <= 0.01 {
                     near += 1;
-                    assert!(candidates.contains(edge));
+                    assert!(candidates.contains(&edge));
                 }
             }
         }
         assert!(near > 1000 && empty > 10_000, "{near} {empty}");
-        assert!(WallIndex::new(&Walls::default(), 0.1).near(Vector::ZERO).is_empty());
+        assert!(WallIndex::new(&Walls::default(), 0.1).near(Vector::ZERO).next().is_none());
     }
 }

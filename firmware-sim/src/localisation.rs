@@ -134,7 +134,10 @@ impl Tracker {
             return;
         }
         // After a gap in time measuring goes on in the old rhythm.
-        track.next_us += self.period_us * (1 + (now_us - track.next_us) / self.period_us);
+        track.next_us += self.period_us;
+        if now_us >= track.next_us {
+            track.next_us += self.period_us * (1 + (now_us - track.next_us) / self.period_us);
+        }
         track.in_gap = self.gaps.next(track.in_gap, &mut track.stream);
         if track.in_gap {
             return;

@@ -12,6 +12,7 @@ mod whereabouts;
 
 use crate::faults::Absences;
 use crate::geometry::{Walls, length_squared};
+use crate::scenario::{Course, Scenario, Scene};
 use crate::trace::{Frame, Observer, metres};
 pub use bearings::Bearings;
 use clearance::Clearance;
@@ -31,17 +32,26 @@ pub const FORMED_FOR_S: f64 = 2.0;
 /// How often encirclement, spacing and distances from the pattern are measured, as far as whole ticks allow.
 pub const MEASUREMENTS_PER_SECOND: u16 = 4;
 
+/// The walls among which robots move.
+#[derive(Clone, Copy, Debug)]
+pub enum WallsOfRun<'a> {
+    /// The same ones all the time.
+    Fixed(&'a Walls),
+    /// Those of a world that takes its course.
+    Changing(&'a Scenario, Course),
+}
+
 /// What metrics need to know besides the frames.
 #[derive(Clone, Debug)]
 pub struct MetricsOptions<'a> {
     /// Walls, in real metres, as the trace is.
-    pub walls: &'a Walls,
+    pub walls: WallsOfRun<'a>,
     /// Radius of the pattern around a lone target in free space, real metres.
     pub ring_radius_m: f64,
     /// Ticks per second, at least 1.
     pub ticks_per_second: u16,
-    /// The ticks in which something disturbed the swarm, rising, as from
-    /// [`FaultPlan::disturbances`](crate::faults::FaultPlan::disturbances).
+    /// The ticks in which something disturbed the swarm, rising: [faults](crate::faults::FaultPlan::disturbances), and targets and
+    /// walls that came or went.
     pub disturbances: &'a [u64],
     /// When which robot is out of service. Then it counts only as something that others may touch, and when it is back it is to
     /// reach the pattern anew.
@@ -56,10 +66,10 @@ pub struct Metrics {
     pub duration_s: f64,
     /// The first time from which every target stayed encircled for at least [`FORMED_FOR_S`]; seconds from the start.
     pub formed_at_s: Option<f64>,
-    /// Share of the moments after forming in which every target was encircled.
+    /// Share of the moments after forming in which every target that was there was encircled.
     pub encircled_share: Option<f64>,
-    /// The same for every target by itself.
-    pub encircled_share_by_target: Option<Vec<f64>>,
+    /// The same for every target by itself, of the moments in which it was there; `None` if it never was.
+    pub encircled_share_by_target: Option<Vec<Option<f64>>>,
     /// Share of all moments of the run in which every target was encircled.
     pub encircled_share_of_run: f64,
     /// The largest angular gap about any target after forming, degrees.
@@ -76,11 +86,11 @@ pub struct Metrics {
     pub lost_robots: usize,
     /// Robots that were off the pattern for [`LEFT_AFTER_S`] after they had reached it, and came back.
     pub strayed_robots: usize,
-    /// How often a robot began to touch a wall.
+    /// How often a robot began to touch a wall, or a target with a body.
     pub wall_contacts: u64,
     /// How often a pair of robots began to touch.
     pub peer_contacts: u64,
-    /// Time in contact with walls, summed over robots, seconds.
+    /// Time in contact with these, summed over robots, seconds.
     pub wall_contact_s: f64,
     /// Time in contact, summed over pairs of robots, seconds.
     pub peer_contact_s: f64,
@@ -109,11 +119,11 @@ pub fn encircles(largest_gap: f64) -> bool {
     largest_gap < MAX_GAP_DEG * PI / 180.0 - 1e-9
 }
 
-/// What gives the distance (metres) of a position from the pattern that belongs to these targets' positions, or `None` where
-/// it is not known.
-pub trait PatternDistance: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64> {}
+/// What gives the distance (metres) of a position from the pattern that belongs to these targets' positions so many seconds from
+/// the start, or `None` where it is not known.
+pub trait PatternDistance: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64> {}
 
-impl<F: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> PatternDistance for F {}
+impl<F: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> PatternDistance for F {}
 
 /// Measures a run while it is observed.
 pub struct Meter<'a, D> {
@@ -129,6 +139,8 @@ pub struct Meter<'a, D> {
     contact_ticks: [u64; 2],
     contact_events: [u64; 2],
     clearance: Clearance,
+    /// The world at the present moment, if its walls change.
+    scene: Option<Scene>,
     recoveries: Vec<(u64, Forming)>,
     last_tick: u64,
     space: Space,
@@ -138,7 +150,9 @@ pub struct Meter<'a, D> {
 #[derive(Default)]
 struct Space {
     bearings: Bearings,
+    /// The targets that are there, and the number of each.
     targets: Vec<Point<f64>>,
+    numbers: Vec<usize>,
     /// The robots that are in service.
     robots: Vec<(usize, Point<f64>)>,
     gaps: Vec<f64>,
@@ -147,6 +161,8 @@ struct Space {
 /// What counts once the swarm has formed; collected from when it may have.
 #[derive(Default)]
 struct AfterForming {
+    /// By target in how many moments it was there, and in how many of these it was encircled.
+    there: Vec<u64>,
     encircled: Vec<u64>,
     largest_gap: f64,
     errors: Errors,
@@ -155,6 +171,7 @@ struct AfterForming {
 
 impl AfterForming {
     fn clear(&mut self) {
+        self.there.clear();
         self.encircled.clear();
         self.largest_gap = 0.0;
         self.errors.clear();
@@ -162,12 +179,15 @@ impl AfterForming {
     }
 }
 
-impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
-    /// Of a run that begins. `pattern_distance` gives the distance (metres) of a position from the pattern that belongs to
-    /// these targets' positions, or `None` where it is not known.
+impl<'a, D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Meter<'a, D> {
+    /// Of a run that begins. `pattern_distance` is a [`PatternDistance`].
     pub fn new(options: MetricsOptions<'a>, pattern_distance: D) -> Self {
         Meter {
             stride: u64::from(options.ticks_per_second / MEASUREMENTS_PER_SECOND).max(1),
+            scene: match options.walls {
+                WallsOfRun::Changing(world, _) if world.walls_change() => Some(Scene::of(world, 0.0)),
+                _ => None,
+            },
             options,
             pattern_distance,
             moments: 0,
@@ -198,8 +218,8 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
         self.ticks(LEFT_AFTER_S).div_ceil(self.stride) as usize
     }
 
-    fn observe_encirclement(&mut self, tick: u64) {
-        let Space { bearings, targets, robots, gaps } = &mut self.space;
+    fn observe_encirclement(&mut self, tick: u64, targets_in_all: usize) {
+        let Space { bearings, targets, robots, gaps, .. } = &mut self.space;
         gaps.clear();
         for &target in targets.iter() {
             bearings.take(target, robots.iter().map(|&(_, position)| position));
@@ -220,20 +240,24 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
             self.after.clear();
             return;
         }
-        self.after.encircled.resize(self.space.gaps.len(), 0);
-        for (encircled, &gap) in self.after.encircled.iter_mut().zip(&self.space.gaps) {
-            *encircled += u64::from(encircles(gap));
-            self.after.largest_gap = self.after.largest_gap.max(gap);
+        let AfterForming { there, encircled, largest_gap, .. } = &mut self.after;
+        there.resize(targets_in_all, 0);
+        encircled.resize(targets_in_all, 0);
+        for (&target, &gap) in self.space.numbers.iter().zip(&self.space.gaps) {
+            there[target] += 1;
+            encircled[target] += u64::from(encircles(gap));
+            *largest_gap = largest_gap.max(gap);
         }
     }
 
-    fn observe_distances(&mut self) {
+    fn observe_distances(&mut self, tick: u64) {
+        let seconds = self.seconds(tick);
         let left_after = self.left_after();
         let counts = self.forming.may_have_formed();
         let Space { bearings, targets, robots, .. } = &mut self.space;
         let ring_radius = self.options.ring_radius_m;
         for &(robot, position) in robots.iter() {
-            let distance = (self.pattern_distance)(position, targets).filter(|distance| !distance.is_nan());
+            let distance = (self.pattern_distance)(position, targets, seconds).filter(|distance| !distance.is_nan());
             let on_pattern = distance.is_some_and(|distance| distance < ON_PATTERN * ring_radius);
             let reach = NEAR_TARGET * ring_radius;
             let near_target = || targets.iter().any(|&target| length_squared(position - target) < reach * reach);
@@ -264,7 +288,10 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
         };
         let formed_at = self.forming.formed_at();
         let after = formed_at.map(|_| &self.after);
-        let share = |count: u64| count as f64 / self.forming.moments() as f64;
+        let by_target = |after: &AfterForming| {
+            let counts = after.encircled.iter().zip(&after.there);
+            counts.map(|(&encircled, &there)| (there > 0).then(|| encircled as f64 / there as f64)).collect()
+        };
         let recovery = |(tick, reforming): &(u64, Forming)| Recovery {
             disturbed_at_s: self.seconds(*tick),
             reformed_at_s: reforming.formed_at().map(|tick| self.seconds(tick)),
@@ -275,7 +302,7 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
             duration_s: self.seconds(self.last_tick),
             formed_at_s: formed_at.map(|tick| self.seconds(tick)),
             encircled_share: self.forming.good_share(),
-            encircled_share_by_target: after.map(|after| after.encircled.iter().map(|&count| share(count)).collect()),
+            encircled_share_by_target: after.map(by_target),
             encircled_share_of_run: self.encircled_moments as f64 / self.moments.max(1) as f64,
             largest_gap_deg: after.map(|after| after.largest_gap.to_degrees()),
             radial_error_median_m: after.and_then(|after| after.errors.percentile(50)),
@@ -294,13 +321,20 @@ impl<'a, D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Meter<'a, D> {
     }
 }
 
-impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, D> {
+impl<D: FnMut(Point<f64>, &[Point<f64>], f64) -> Option<f64>> Observer for Meter<'_, D> {
     fn observe(&mut self, frame: &Frame<'_>) {
         self.last_tick = frame.tick;
         if frame.tick.is_multiple_of(self.stride) {
-            let Space { targets, robots, .. } = &mut self.space;
+            let Space { targets, numbers, robots, .. } = &mut self.space;
             targets.clear();
-            targets.extend(frame.targets_um.iter().map(|&target| metres(target)));
+            targets.extend(frame.targets_um.iter().flatten().map(|&target| metres(target)));
+            let there = (0..).zip(frame.targets_um).filter(|(_, target)| target.is_some()).map(|(number, _)| number);
+            if !there.clone().eq(numbers.iter().copied()) {
+                numbers.clear();
+                numbers.extend(there);
+                // The pattern is another one: every robot has to reach it anew.
+                self.robots.iter_mut().for_each(Whereabouts::suspend);
+            }
             robots.clear();
             self.robots.resize(frame.robots.len(), Whereabouts::default());
             let since = (frame.tick + 1).saturating_sub(self.stride);
@@ -311,8 +345,8 @@ impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, 
                     whereabouts.suspend();
                 }
             }
-            self.observe_encirclement(frame.tick);
-            self.observe_distances();
+            self.observe_encirclement(frame.tick, frame.targets_um.len());
+            self.observe_distances(frame.tick);
         }
         let contacts = frame.contacts;
         for (sum, count) in self.contact_events.iter_mut().zip([contacts.wall_events, contacts.peer_events]) {
@@ -321,7 +355,16 @@ impl<D: FnMut(Point<f64>, &[Point<f64>]) -> Option<f64>> Observer for Meter<'_, 
         for (sum, count) in self.contact_ticks.iter_mut().zip([contacts.walls, contacts.peers]) {
             *sum += u64::from(count);
         }
-        self.clearance.observe(frame.robots.iter().map(|robot| metres(robot.position_um)), self.options.walls);
+        let robots = frame.robots.iter().map(|robot| metres(robot.position_um));
+        match (self.options.walls, &mut self.scene) {
+            (WallsOfRun::Changing(world, course), Some(scene)) => {
+                scene.move_to(world, course.time_at(frame.tick as f64 / f64::from(self.options.ticks_per_second)));
+                self.clearance.forget_places();
+                self.clearance.observe(robots, scene.walls());
+            }
+            (WallsOfRun::Changing(world, _), None) => self.clearance.observe(robots, world.fixed_walls()),
+            (WallsOfRun::Fixed(walls), _) => self.clearance.observe(robots, walls),
+        }
     }
 }
 

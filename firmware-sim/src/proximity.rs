@@ -128,9 +128,10 @@ impl Fan {
             let along = offset.x * cos + offset.y * sin;
             let aside = offset.x * sin - offset.y * cos - self.aside;
             let room = radius * radius - aside * aside;
-            let distance = along - (if room > 0.0 { room } else { 0.0 }).sqrt() - self.ahead;
+            // A ray that passes by has the root of a negative number, NaN, with which no comparison holds.
+            let distance = along - room.sqrt() - self.ahead;
             // Without short circuits the eight sensors are computed side by side.
-            let met = (along > 0.0) & (room >= 0.0) & (distance < *free);
+            let met = (along > 0.0) & (distance < *free);
             *free = if met { distance } else { *free };
         }
     }
@@ -213,11 +214,14 @@ impl ProximityRing {
     /// Free distances as the percept has them, in 0.1 mm.
     pub fn readings(&self, free: &FreeDistances, gains: &Gains, noise: &mut Stream) -> [u16; PROXIMITY_SENSORS] {
         let mut readings = [u16::MAX; PROXIMITY_SENSORS];
+        let [mut nearest, side_rays @ ..] = *free;
+        for fan in side_rays.iter().take(self.fans.len() - 1) {
+            nearest.iter_mut().zip(fan).for_each(|(nearest, ray)| *nearest = nearest.min(*ray));
+        }
         for (sensor, (reading, &gain)) in readings.iter_mut().zip(&gains.0).enumerate() {
-            let rays = free.map(|free| free[sensor]);
-            let nearest = rays.into_iter().fold(f64::INFINITY, f64::min);
+            let nearest = nearest[sensor];
             if nearest <= PROXIMITY_RANGE
-                && let Some(felt) = self.felt(rays.map(|ray| ray.max(0.0)))
+                && let Some(felt) = self.felt(free.map(|fan| fan[sensor].max(0.0)))
             {
                 let sensed = self.sensed(felt, nearest.max(0.0), gain, noise);
                 *reading = if sensed > PROXIMITY_RANGE { u16::MAX } else { (sensed * 1e4 + 0.5) as u16 };

@@ -15,7 +15,7 @@ use crate::bursts::Bursts;
 use crate::geometry::{Walls, length_squared};
 use crate::grid::Grid;
 use crate::lab::{self, MOST_PACKETS};
-use crate::random::{Component, Draws, Stream};
+use crate::random::{Component, DrawSeries, Draws, Stream};
 use crate::timing::{FRAME_US, frames_in};
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::BODY_RADIUS;
@@ -35,6 +35,8 @@ pub struct Ether {
     /// Below this draw a message of so many packets (less one) is lost.
     lost_below: [u64; MOST_PACKETS],
     bursts: Option<Bursts>,
+    /// Whether messages are stopped by distance and by chance only, each in one packet.
+    ordinary: bool,
     /// The frames that can still be heard, and those to come; frame f is at f modulo their number.
     frames: Vec<Sent>,
     now: u64,
@@ -55,19 +57,35 @@ struct Sent {
 pub struct Receiver {
     robot: u16,
     stream: Stream,
+    luck: DrawSeries,
     failing: bool,
     /// The first frame whose broadcasts it has not been offered.
     next_frame: u64,
 }
 
-/// A sender as a number that sorts by distance, then by the frame, then by the sender's number: the squared distance's bits
-/// (nonnegative floats sort like their bits), of which the last twenty give way.
-fn rank(sender: u16, age: u64, squared: f64) -> u64 {
-    (squared.to_bits() & !0xf_ffff) | (age & 0xf) << 16 | u64::from(sender)
+/// A sender as a number that sorts by distance, then by the frame, then by the sender's number: the squared distance, whose
+/// last twenty bits give way to the others (nonnegative floats sort like their bits).
+fn rank(sender: u16, age: u64, squared: f64) -> f64 {
+    f64::from_bits((squared.to_bits() & !0xf_ffff) | (age & 0xf) << 16 | u64::from(sender))
 }
 
 /// Ranks after every sender.
-const NOBODY: u64 = u64::MAX;
+const NOBODY: f64 = f64::INFINITY;
+
+/// Sorts a rank in among the nearest, of which the last drops out. Every place is computed beside the others, from what was in
+/// it and before it.
+#[inline]
+fn sort_in(nearest: &mut [f64; MAX_HEARD], rank: f64) {
+    // Not `f64::min` and `f64::max`, which care for NaN.
+    let smaller = |a: f64, b: f64| if a < b { a } else { b };
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let before = *nearest;
+    nearest[0] = smaller(before[0], rank);
+    for place in 1..MAX_HEARD {
+        nearest[place] = larger(before[place - 1], smaller(before[place], rank));
+    }
+}
+
 /// The most frames that one tick of a receiver covers: a tick takes at most 0.2 s.
 const MOST_OFFERED: u64 = 15;
 
@@ -75,7 +93,8 @@ impl Ether {
     /// An empty ether for this many robots.
     pub fn new(radio: &lab::Radio, seed: u64, robots: usize) -> Self {
         let latency_frames = frames_in(radio.latency_s);
-        let kept = latency_frames + MOST_OFFERED + MOST_PACKETS as u64 + 1;
+        // A power of two, so that a frame's place is found without dividing.
+        let kept = (latency_frames + MOST_OFFERED + MOST_PACKETS as u64 + 1).next_power_of_two();
         let reach = radio.range_m * (1.0 + MOST_DEVIATIONS * radio.range_noise);
         let sent =
             |_| Sent { senders: Vec::new(), letters: vec![(Letter::BLANK, 0); robots], grid: Grid::new(reach, robots) };
@@ -91,6 +110,10 @@ impl Ether {
             latency_frames,
             lost_below,
             bursts: (radio.burst_s > 0.0).then(|| Bursts::new(radio.loss, radio.burst_s, FRAME_US as f64 * 1e-6)),
+            ordinary: radio.payload_bytes == 0
+                && radio.range_noise <= 0.0
+                && radio.echo <= 0.0
+                && !(radio.walls_block || radio.bodies_block),
             frames: (0..kept).map(sent).collect(),
             now: 0,
         }
@@ -100,11 +123,12 @@ impl Ether {
     pub fn receiver(&self, robot: usize) -> Receiver {
         let mut stream = Stream::new(self.seed, Component::Radio, robot);
         let failing = self.bursts.is_some_and(|bursts| bursts.first(&mut stream));
-        Receiver { robot: robot as u16, stream, failing, next_frame: 0 }
+        let luck = DrawSeries::new(self.seed, Component::Radio, robot);
+        Receiver { robot: robot as u16, stream, luck, failing, next_frame: 0 }
     }
 
     fn slot(&self, frame: u64) -> usize {
-        (frame % self.frames.len() as u64) as usize
+        frame as usize & (self.frames.len() - 1)
     }
 
     /// Begins frame number `frame`: says where robots are now. What was sent before can be heard from there.
@@ -132,32 +156,37 @@ impl Ether {
         letters[sender] = (*letter, packets as u8 - 1);
     }
 
-    /// What a receiver hears at the time `now_us`, in this frame, at `position`: of what it was not offered before.
+    /// Fills `heard` with what a receiver hears at the time `now_us`, in this frame, at `position`: of what it was not offered
+    /// before.
     pub fn deliver(
         &self,
         receiver: &mut Receiver,
         position: Point<f64>,
         now_us: u64,
         obstruction: &Obstruction<'_>,
-    ) -> heapless::Vec<Heard, MAX_HEARD> {
-        let mut heard = heapless::Vec::new();
-        let Some(last) = self.now.checked_sub(1 + self.latency_frames) else { return heard };
+        heard: &mut heapless::Vec<Heard, MAX_HEARD>,
+    ) {
+        heard.clear();
+        let Some(last) = self.now.checked_sub(1 + self.latency_frames) else { return };
         let first = receiver.next_frame.max((last + 1).saturating_sub(MOST_OFFERED));
         receiver.next_frame = last + 1;
         let mut nearest = [NOBODY; MAX_HEARD];
-        for frame in first..=last {
+        for frame in first..last + 1 {
             self.offer(frame, last - frame, receiver, position, obstruction, &mut nearest);
         }
-        for rank in nearest.into_iter().take_while(|&rank| rank != NOBODY) {
+        for rank in nearest.into_iter().take_while(|&rank| rank < NOBODY).map(f64::to_bits) {
             let (sender, frame) = ((rank & 0xffff) as usize, last - (rank >> 16 & 0xf));
             let (letter, _) = &self.frames[self.slot(frame)].letters[sender];
             let age_ms = ((now_us.saturating_sub(letter.sent_us) + 500) / 1000).min(u64::from(u16::MAX)) as u16;
-            if let Some(message) = self.received(letter.message(), receiver.robot, frame) {
-                // As many as fit were chosen.
+            // As many as fit were chosen.
+            let _ = heard.push(Heard { message: letter.message(), age_ms });
+            if self.radio.corruption > 0.0
+                && let Some(sound) = heard.pop()
+                && let Some(message) = self.received(sound.message, receiver.robot, frame)
+            {
                 let _ = heard.push(Heard { message, age_ms });
             }
         }
-        heard
     }
 
     /// What could be heard by now passes a receiver by.
@@ -173,7 +202,7 @@ impl Ether {
         receiver: &mut Receiver,
         position: Point<f64>,
         obstruction: &Obstruction<'_>,
-        nearest: &mut [u64; MAX_HEARD],
+        nearest: &mut [f64; MAX_HEARD],
     ) {
         if let Some(bursts) = self.bursts {
             receiver.failing = bursts.next(receiver.failing, &mut receiver.stream);
@@ -186,21 +215,29 @@ impl Ether {
             return;
         }
         let own = receiver.robot;
-        let draws = Draws::new(self.seed, Component::Radio, usize::from(own), frame);
+        let draws = receiver.luck.at(frame);
         let limit = self.radio.range_m * self.radio.range_m;
+        if self.ordinary {
+            return grid.within(position, limit, |sender, squared| {
+                let rank = rank(sender, age, squared);
+                let farther = rank >= nearest[MAX_HEARD - 1];
+                if (sender == own) | farther || u64::from(draws.at(u32::from(sender))) < self.lost_below[0] {
+                    return;
+                }
+                sort_in(nearest, rank);
+            });
+        }
         grid.around(position, |sender, squared| {
             let limit = if self.radio.range_noise > 0.0 { self.noisy_limit(draws, sender) } else { limit };
-            let candidate = (squared <= limit) & ((sender != own) | (self.radio.echo > 0.0));
-            let mut moving = if candidate { rank(sender, age, squared) } else { NOBODY };
-            if moving >= nearest[MAX_HEARD - 1] {
+            let rank = rank(sender, age, squared);
+            let hidden = sender == own && self.radio.echo <= 0.0;
+            if squared > limit || hidden || rank >= nearest[MAX_HEARD - 1] {
                 return;
             }
             let packets = usize::from(letters[usize::from(sender)].1);
             let arrives = u64::from(draws.at(u32::from(sender))) >= self.lost_below[packets];
             if arrives && self.passes(sender, own, draws, position, obstruction) {
-                for slot in nearest.iter_mut() {
-                    (*slot, moving) = (moving.min(*slot), moving.max(*slot));
-                }
+                sort_in(nearest, rank);
             }
         });
     }
@@ -227,10 +264,7 @@ impl Ether {
 
     /// The message as it arrives.
     fn received(&self, message: Message, receiver: u16, frame: u64) -> Option<Message> {
-        if self.radio.corruption <= 0.0 {
-            return Some(message);
-        }
-        let draws = Draws::new(self.seed, Component::Corruption, usize::from(receiver), frame);
+        let draws = DrawSeries::new(self.seed, Component::Corruption, usize::from(receiver)).at(frame);
         let sender = u32::from(message.sender);
         if f64::from(draws.at(sender)) >= self.radio.corruption * 4_294_967_296.0 {
             return Some(message);

@@ -74,17 +74,28 @@ impl Stream {
     }
 }
 
+/// Random numbers by time and index, in any order.
+#[derive(Clone, Copy, Debug)]
+pub struct DrawSeries(u64);
+
+impl DrawSeries {
+    /// Those of this component, for one `index`, such as a robot.
+    pub fn new(seed: u64, component: Component, index: usize) -> Self {
+        let stream = (u64::from(component as u8) << 56) | index as u64;
+        DrawSeries(mixed(seed ^ mixed(stream)))
+    }
+
+    /// Those of one moment.
+    pub fn at(self, time: u64) -> Draws {
+        Draws(mixed(self.0.wrapping_add(time)))
+    }
+}
+
 /// Random numbers by index, in any order: the sequence of a SplitMix64 generator.
 #[derive(Clone, Copy, Debug)]
 pub struct Draws(u64);
 
 impl Draws {
-    /// Those of this component at this time, for one `index`, such as a robot.
-    pub fn new(seed: u64, component: Component, index: usize, time: u64) -> Self {
-        let stream = (u64::from(component as u8) << 56) | index as u64;
-        Draws(mixed(mixed(seed ^ mixed(stream)).wrapping_add(time)))
-    }
-
     /// Draw number `index`: uniform over all `u32`.
     pub fn at(self, index: u32) -> u32 {
         (mixed(self.0.wrapping_add(u64::from(index).wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 32) as u32
@@ -120,7 +131,7 @@ mod tests {
         let low = |draw: u32| u32::from(draw < 1 << 30);
         let (mut first, mut second, mut both) = (0, 0, 0);
         for time in 0..u64::from(n) {
-            let draws = Draws::new(3, Component::Radio, 0, time);
+            let draws = DrawSeries::new(3, Component::Radio, 0).at(time);
             let (a, b) = (low(draws.at(0)), low(draws.at(1)));
             (first, second, both) = (first + a, second + b, both + a * b);
         }

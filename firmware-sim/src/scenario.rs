@@ -1,18 +1,30 @@
-//! A world as a person writes it: region, target paths, walls, and what the morphogens and the ring are.
+//! A world as a person writes it: region, targets, walls, and what the morphogens and the ring are.
 //!
-//! Lengths are the model's metres; [`Scenario::scaled`] gives the same world in a laboratory's metres.
+//! Lengths are the model's metres; [`Scenario::scaled`] gives the same world in a laboratory's metres. Times go from 0, when the
+//! targets set out, to 1, when they have arrived, whatever that takes.
 
 mod file;
 pub mod limits;
+mod moving;
 mod path;
+mod presence;
 pub mod random;
+mod scene;
+mod tables;
+mod target;
+mod things;
+mod timing;
 
 pub use grn_input::InputError;
 pub use limits::MAX_SNAPSHOTS;
+pub use moving::{Motion, MovingWall};
 pub use path::Path;
+pub use presence::Presence;
 pub use random::RandomObstacles;
+pub use scene::{Course, Scene};
+pub use target::Target;
 
-use crate::geometry::Walls;
+use crate::geometry::{Bounds, Polygon, Walls};
 use file::ScenarioFile;
 use grn_core::field::Kernel;
 use grn_core::geometry::Point;
@@ -57,10 +69,12 @@ pub struct Scenario {
     name: String,
     region: [f64; 2],
     snapshots: usize,
+    duration_s: Option<f64>,
     morphogen: Morphogen,
     ring: Ring,
-    targets: Vec<Path>,
-    walls: Walls,
+    targets: Vec<Target>,
+    fixed_walls: Walls,
+    moving_walls: Vec<MovingWall>,
 }
 
 impl Scenario {
@@ -82,7 +96,8 @@ impl Scenario {
     /// # Errors
     /// [`InputError`] for text that is not TOML, unknown or missing keys, numbers out of the ranges in [`limits`], alone or
     /// together, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS), two targets on the same
-    /// path, paths that leave the region or enter a wall, and polygons that are none.
+    /// path, a time without a target, paths that leave the region or enter a wall, walls that run into a target, and polygons
+    /// that are none.
     pub fn parse(text: &str) -> Result<Scenario, InputError> {
         grn_input::parse(text.trim_start_matches('\u{feff}'), |file: ScenarioFile| Scenario::try_from(file))
     }
@@ -117,42 +132,90 @@ impl Scenario {
         self.ring
     }
 
-    /// The targets' paths, 1 to 4 of them.
-    pub fn paths(&self) -> &[Path] {
+    /// The targets, 1 to 4 of them.
+    pub fn targets(&self) -> &[Target] {
         &self.targets
     }
 
-    /// The walls; perhaps none.
-    pub fn walls(&self) -> &Walls {
-        &self.walls
+    /// The walls that are always where they are drawn; perhaps none.
+    pub fn fixed_walls(&self) -> &Walls {
+        &self.fixed_walls
     }
 
-    /// Where the targets are after this share of the time: 0 at the start of their paths, 1 at the end. Each moves along
-    /// its own path at constant speed, so all arrive together. A share outside [0, 1] is taken as the nearer end.
-    pub fn targets_at(&self, fraction: f64) -> Vec<Point<f64>> {
-        self.targets.iter().map(|path| path.at(fraction)).collect()
+    /// The walls that move, or are not always there; perhaps none.
+    pub fn moving_walls(&self) -> &[MovingWall] {
+        &self.moving_walls
     }
 
-    /// The targets of every snapshot, equally spaced in time with both ends included; a single snapshot is the start.
-    pub fn snapshot_targets(&self) -> Vec<Vec<Point<f64>>> {
+    /// Whether walls are not the same at all times.
+    pub fn walls_change(&self) -> bool {
+        !self.moving_walls.is_empty()
+    }
+
+    /// Where the targets are at a time, 0 at the start of their paths, 1 at the end; those that are there. A target without times of
+    /// its own moves along its path at constant speed, so all such arrive together. A time outside [0, 1] is taken as the nearer end.
+    pub fn targets_at(&self, time: f64) -> Vec<Point<f64>> {
+        self.targets.iter().filter_map(|target| target.at(time)).collect()
+    }
+
+    /// The walls that are there at a time.
+    pub fn walls_at(&self, time: f64) -> Walls {
+        let mut walls = self.fixed_walls.clone();
+        walls.set_moving(self.moving_walls_at(time));
+        walls
+    }
+
+    /// Of the walls that move or are not always there those that are there at a time, where they are then.
+    pub(crate) fn moving_walls_at(&self, time: f64) -> impl Iterator<Item = Polygon> + '_ {
+        self.moving_walls.iter().filter_map(move |wall| wall.at(time))
+    }
+
+    /// The time of every snapshot: equally spaced with both ends included; a single snapshot is the start.
+    pub fn snapshot_times(&self) -> impl Iterator<Item = f64> + use<> {
         let last = self.snapshots.saturating_sub(1).max(1) as f64;
-        (0..self.snapshots).map(|index| self.targets_at(index as f64 / last)).collect()
+        (0..self.snapshots).map(move |index| index as f64 / last)
     }
 
-    /// Length of the longest path, metres; 0 when every target stands still.
+    /// The times within the run at which a target or a wall comes or goes, rising.
+    pub fn changes(&self) -> Vec<f64> {
+        let targets = self.targets.iter().flat_map(|target| target.presence.changes());
+        let mut changes: Vec<f64> =
+            targets.chain(self.moving_walls.iter().flat_map(|wall| wall.presence.changes())).collect();
+        changes.sort_by(f64::total_cmp);
+        changes.dedup();
+        changes
+    }
+
+    /// The longest way that anything would go in the whole run at its greatest speed, metres: the length of the longest path, if all
+    /// targets move at constant speed; 0 when nothing moves.
     pub fn longest_path(&self) -> f64 {
-        self.targets.iter().map(Path::length).fold(0.0, f64::max)
+        let targets = self.targets.iter().map(|target| target.path.length_at_full_speed());
+        targets.chain(self.moving_walls.iter().map(MovingWall::length_at_full_speed)).fold(0.0, f64::max)
     }
 
-    /// Samples of every wall's outline, each [`OBSTACLE_SPACING`] of arc length from its first vertex on.
-    pub fn boundary_samples(&self) -> Vec<Point<f64>> {
-        self.walls.boundary_samples(OBSTACLE_SPACING)
+    /// How long it takes from time 0 to time 1, seconds, if the world says so itself.
+    pub fn duration_s(&self) -> Option<f64> {
+        self.duration_s
     }
 
-    /// Those [`boundary_samples`](Scenario::boundary_samples) that lie within [`PERCEPTION_RANGE`] of some target.
-    /// Meant for unscaled scenarios: spacing and range are not scaled.
-    pub fn obstacle_points(&self, targets: &[Point<f64>]) -> Vec<Point<f64>> {
-        let mut points = self.boundary_samples();
+    /// How long it takes from time 0 to time 1, seconds: what the world itself says, or as long as what is fastest takes if it goes
+    /// `speed` metres per second at most.
+    pub fn travel_s(&self, speed: f64) -> f64 {
+        self.duration_s.unwrap_or_else(|| self.longest_path() / speed)
+    }
+
+    /// The smallest box around the region, paths and walls, wherever these move.
+    pub fn extent(&self) -> Bounds {
+        let region = Bounds { low: Point::ZERO, high: Point::new(self.region[0], self.region[1]) };
+        let paths = Bounds::around(self.targets.iter().flat_map(|target| target.path.points().iter().copied()));
+        let moving = self.moving_walls.iter().map(MovingWall::reach);
+        paths.into_iter().chain(self.fixed_walls.bounds()).chain(moving).fold(region, Bounds::joined)
+    }
+
+    /// Those samples of the outlines of `walls`, each [`OBSTACLE_SPACING`] of arc length from a wall's first vertex on, that lie within
+    /// [`PERCEPTION_RANGE`] of some target. Meant for unscaled scenarios: spacing and range are not scaled.
+    pub fn obstacle_points(walls: &Walls, targets: &[Point<f64>]) -> Vec<Point<f64>> {
+        let mut points = walls.boundary_samples(OBSTACLE_SPACING);
         points.retain(|&p| targets.iter().any(|&t| (p - t).length() <= PERCEPTION_RANGE));
         points
     }
@@ -178,6 +241,7 @@ impl Scenario {
             name: self.name.clone(),
             region: self.region.map(|side| side * factor),
             snapshots: self.snapshots,
+            duration_s: self.duration_s,
             morphogen: Morphogen {
                 kernel,
                 target_width: target_width * factor,
@@ -190,8 +254,9 @@ impl Scenario {
                 d_obstacle: d_obstacle * factor,
                 steepness: steepness / factor,
             },
-            targets: self.targets.iter().map(|path| path.scaled(factor)).collect(),
-            walls: self.walls.scaled(factor),
+            targets: self.targets.iter().map(|target| target.scaled(factor)).collect(),
+            fixed_walls: self.fixed_walls.scaled(factor),
+            moving_walls: self.moving_walls.iter().map(|wall| wall.scaled(factor)).collect(),
         }
     }
 }

@@ -9,21 +9,21 @@
 //! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
 mod ailments;
+mod part;
 mod placement;
 mod unit;
 
 use crate::body::Pose;
 use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
-use crate::contacts::{ContactCounts, Contacts};
+use crate::contacts::{ContactCounts, Contacts, Solid};
 use crate::faults::{Fault, FaultPlan};
-use crate::geometry::Walls;
 use crate::grid::{Grid, WallIndex};
 use crate::lab::FaultKind;
 use crate::localisation::Tracker;
 use crate::proximity::{ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::Ether;
-use crate::scenario::{PERCEPTION_RANGE, Scenario};
+use crate::scenario::{Course, OBSTACLE_SPACING, PERCEPTION_RANGE, Scenario, Scene};
 use crate::trace::{Frame, Observer, RobotState};
 use crate::units::{micrometres, unit_q14};
 use core::fmt;
@@ -31,6 +31,7 @@ use core::ops::ControlFlow;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_input::InputError;
+use part::{CROWD, Numbered, PART, Part};
 use rayon::prelude::*;
 use unit::{Surroundings, Unit};
 
@@ -78,20 +79,21 @@ impl core::error::Error for StepError {
     }
 }
 
-/// From so many robots on it pays to let several threads think for them.
-const CROWD: usize = 256;
-/// Robots that a thread thinks for at a time.
-const CROWD_PART: usize = 64;
-
 /// A swarm in a world. All lengths in real metres.
 pub struct Swarm<B> {
     config: SwarmConfig,
     world: Scenario,
+    course: Course,
+    /// Targets and walls at the present moment.
+    scene: Scene,
+    /// Places on the outlines of walls that mothers may see: those of fixed walls, then those of others at the present moment.
     samples: Vec<Point<f64>>,
+    fixed_samples: usize,
     wall_index: WallIndex,
     tracker: Tracker,
     ring: ProximityRing,
     units: Vec<Unit<B>>,
+    parts: Vec<Part>,
     poses: Vec<Pose>,
     /// Where robots were at the beginning of the frame.
     positions: Vec<Point<f64>>,
@@ -99,7 +101,6 @@ pub struct Swarm<B> {
     grid: Grid,
     ether: Ether,
     contacts: Contacts,
-    targets: Vec<Point<f64>>,
     tick: u64,
     faults: FaultPlan,
     /// Who is carried away when, the next one last.
@@ -110,7 +111,7 @@ pub struct Swarm<B> {
 /// The present moment as observers see it.
 #[derive(Default)]
 struct Recorded {
-    targets_um: Vec<[i32; 2]>,
+    targets_um: Vec<Option<[i32; 2]>>,
     robots: Vec<RobotState>,
     contacts: ContactCounts,
 }
@@ -131,19 +132,17 @@ pub fn check(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError
     set_up(scenario, config).map(|_| ())
 }
 
-/// Ticks until all targets of a world in real metres have arrived.
-fn arrival_tick(world: &Scenario, config: &SwarmConfig) -> u64 {
-    let travel_s = world.longest_path() / config.target_speed_m_per_s;
-    ((config.settle_s + travel_s) * f64::from(TICKS_PER_SECOND)).ceil() as u64
+/// Ticks until the world has taken its course.
+fn arrival_tick(course: &Course) -> u64 {
+    (course.end_s() * f64::from(TICKS_PER_SECOND)).ceil() as u64
 }
 
 /// The world in real metres, where the robots start, and what goes wrong until the targets have arrived.
 fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Pose>, FaultPlan), InputError> {
     config.check()?;
     let world = scenario.scaled(config.scale);
-    let walls = world.walls().bounds().into_iter().flat_map(|bounds| [bounds.low, bounds.high]);
-    let extent = world.paths().iter().flat_map(|path| path.points().iter().copied()).chain(walls);
-    let farthest = extent.fold(world.region()[0].max(world.region()[1]), |far, p| far.max(p.x.abs()).max(p.y.abs()));
+    let extent = world.extent();
+    let farthest = [extent.low, extent.high].into_iter().fold(0.0, |far: f64, p| far.max(p.x.abs()).max(p.y.abs()));
     let reach = MAX_COORDINATE - 1.0;
     if farthest > reach {
         let most = config.scale * reach / farthest;
@@ -160,7 +159,7 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
         );
         InputError::new("robots", robots, way_out)
     })?;
-    let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&world, config))?;
+    let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&Course::of(&world, config)))?;
     Ok((world, poses, faults))
 }
 
@@ -179,14 +178,20 @@ impl<B: Brain> Swarm<B> {
         let (world, poses, faults) = set_up(scenario, &config)?;
         let lab = &config.lab;
         let n = lab.robots.count;
-        let samples: Vec<Point<f64>> = scenario.boundary_samples().into_iter().map(|p| p * config.scale).collect();
+        let samples = scenario.fixed_walls().boundary_samples(OBSTACLE_SPACING);
+        let samples: Vec<Point<f64>> = samples.into_iter().map(|p| p * config.scale).collect();
+        let scene = Scene::of(&world, 0.0);
         let tracker = Tracker::new(&lab.localisation);
         let ether = Ether::new(&lab.radio, config.seed, n);
         let unit = |(robot, faults)| Unit::new(robot, brain(robot), &config, faults, &tracker, &ether, samples.len());
-        let units = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
+        let units: Vec<Unit<B>> = faults.by_robot(n).into_iter().enumerate().map(unit).collect();
         let mut swarm = Swarm {
-            wall_index: WallIndex::new(world.walls(), WALL_REACH),
+            wall_index: WallIndex::new(scene.walls(), WALL_REACH),
+            course: Course::of(&world, &config),
+            scene,
+            fixed_samples: samples.len(),
             ring: ProximityRing::new(&lab.proximity),
+            parts: units.chunks(PART).map(|_| Part::default()).collect(),
             units,
             positions: poses.iter().map(|pose| pose.position).collect(),
             poses,
@@ -197,14 +202,14 @@ impl<B: Brain> Swarm<B> {
             grid: Grid::new(ROBOT_REACH, n),
             ether,
             contacts: Contacts::new(n),
-            targets: world.targets_at(0.0),
             tick: 0,
             carried: faults.faults().iter().filter(|fault| fault.kind == FaultKind::Carried).rev().copied().collect(),
             faults,
-            recorded: Recorded::default(),
+            recorded: Recorded { robots: vec![RobotState::default(); n], ..Recorded::default() },
             world,
             config,
         };
+        swarm.sample_moving_walls();
         swarm.record(ContactCounts::default());
         Ok(swarm)
     }
@@ -219,9 +224,14 @@ impl<B: Brain> Swarm<B> {
         &self.world
     }
 
-    /// The walls in real metres.
-    pub fn walls(&self) -> &Walls {
-        self.world.walls()
+    /// Targets and walls as they are now, in real metres.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// When in the run the world is at which time.
+    pub fn course(&self) -> &Course {
+        &self.course
     }
 
     /// Frames simulated so far.
@@ -239,11 +249,6 @@ impl<B: Brain> Swarm<B> {
         &self.poses
     }
 
-    /// Where targets are now.
-    pub fn targets(&self) -> &[Point<f64>] {
-        &self.targets
-    }
-
     /// The brains, by robot number.
     pub fn brains(&self) -> impl ExactSizeIterator<Item = &B> {
         self.units.iter().map(|unit| &unit.brain)
@@ -257,11 +262,7 @@ impl<B: Brain> Swarm<B> {
 
     /// The tick at which all targets have arrived: settling time plus travelling time, rounded up.
     pub fn arrival_tick(&self) -> u64 {
-        arrival_tick(&self.world, &self.config)
-    }
-
-    fn travel_s(&self) -> f64 {
-        self.world.longest_path() / self.config.target_speed_m_per_s
+        arrival_tick(&self.course)
     }
 
     /// Simulates up to the tick `end`. `observer` sees the start, if nothing has been simulated yet, and the world after
@@ -301,18 +302,22 @@ impl<B: Brain> Swarm<B> {
         self.ether.begin(self.tick, &self.positions);
         self.think_and_drive()?;
         self.near.clear();
-        for (robot, unit) in (0u16..).zip(&self.units) {
-            if let Some(letter) = &unit.letter {
-                self.ether.send(usize::from(robot), letter);
-            }
-            self.near.extend(unit.near.iter().filter(|&&other| robot < other).map(|&other| (robot, other)));
+        for part in &self.parts {
+            part.letters.iter().for_each(|(robot, letter)| self.ether.send(usize::from(*robot), letter));
+            self.near.extend_from_slice(&part.near);
         }
-        let counts = self.contacts.resolve(&mut self.poses, &self.near, self.world.walls(), &self.wall_index);
+        let solid = Solid {
+            walls: self.scene.walls(),
+            index: &self.wall_index,
+            targets: self.scene.targets(),
+            target_radius: self.config.lab.bodies.target_radius_m,
+        };
+        let counts = self.contacts.resolve(&mut self.poses, &self.near, &solid);
         for (position, pose) in self.positions.iter_mut().zip(&self.poses) {
             *position = pose.position;
         }
         self.tick += 1;
-        self.move_targets();
+        self.move_world();
         self.record(counts);
         Ok(())
     }
@@ -320,7 +325,13 @@ impl<B: Brain> Swarm<B> {
     fn carry_away(&mut self) {
         while let Some(fault) = self.carried.pop_if(|next| next.from <= self.tick) {
             let robot = fault.robot;
-            let pose = placement::carried(&self.world, &self.poses, self.poses[robot], &mut fault.stream());
+            let pose = placement::carried(
+                &self.world,
+                self.scene.walls(),
+                &self.poses,
+                self.poses[robot],
+                &mut fault.stream(),
+            );
             self.poses[robot] = pose;
             self.positions[robot] = pose.position;
         }
@@ -331,46 +342,52 @@ impl<B: Brain> Swarm<B> {
             lab: &self.config.lab,
             frame: self.tick,
             positions: &self.positions,
-            targets: &self.targets,
+            scene: &self.scene,
             samples: &self.samples,
             sight_m: PERCEPTION_RANGE * self.config.scale,
             grid: &self.grid,
-            walls: self.world.walls(),
             wall_index: &self.wall_index,
             tracker: &self.tracker,
             ring: &self.ring,
             ether: &self.ether,
         };
-        let one = |(robot, (unit, pose)): (usize, (&mut Unit<B>, &mut Pose))| {
-            unit.frame(pose, &around).map_err(|source| StepError { robot, tick: around.frame, source })
+        let one = |(number, (part, ((units, poses), states))): Numbered<'_, B>| {
+            part.frame(number * PART, units, poses, states, &around)
         };
+        let states = &mut self.recorded.robots;
         if self.units.len() < CROWD {
-            return self.units.iter_mut().zip(&mut self.poses).enumerate().try_for_each(one);
+            let robots = self.units.chunks_mut(PART).zip(self.poses.chunks_mut(PART)).zip(states.chunks_mut(PART));
+            return self.parts.iter_mut().zip(robots).enumerate().try_for_each(one);
         }
-        let robots = self.units.par_iter_mut().zip(self.poses.par_iter_mut()).enumerate().with_min_len(CROWD_PART);
+        let robots = self.units.par_chunks_mut(PART).zip(self.poses.par_chunks_mut(PART));
+        let parts = self.parts.par_iter_mut().zip(robots.zip(states.par_chunks_mut(PART))).enumerate();
         // Whoever fails first in time, the one with the lowest number is named.
-        robots.filter_map(|robot| one(robot).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
+        parts.filter_map(|part| one(part).err()).min_by_key(|error| error.robot).map_or(Ok(()), Err)
     }
 
-    fn move_targets(&mut self) {
-        let travelled = self.tick as f64 / f64::from(TICKS_PER_SECOND) - self.config.settle_s;
-        let fraction = if travelled > 0.0 { travelled / self.travel_s() } else { 0.0 };
-        for (target, path) in self.targets.iter_mut().zip(self.world.paths()) {
-            *target = path.at(fraction);
+    /// Targets and walls as they are in this frame.
+    fn move_world(&mut self) {
+        self.scene.move_to(&self.world, self.course.time_at(self.tick as f64 / f64::from(TICKS_PER_SECOND)));
+        if self.world.walls_change() {
+            self.wall_index.set_moving(self.scene.walls());
+            self.sample_moving_walls();
         }
+    }
+
+    fn sample_moving_walls(&mut self) {
+        let spacing = OBSTACLE_SPACING * self.config.scale;
+        self.samples.truncate(self.fixed_samples);
+        self.samples.extend(self.scene.walls().moving().iter().flat_map(|wall| wall.boundary_samples(spacing)));
     }
 
     fn record(&mut self, contacts: ContactCounts) {
         let um = |p: Point<f64>| [micrometres(p.x), micrometres(p.y)];
-        let robots = self.poses.iter().zip(&self.units).map(|(pose, unit)| RobotState {
-            position_um: um(pose.position),
-            heading_q14: [unit_q14(pose.heading.x), unit_q14(pose.heading.y)],
-            wheels: unit.wheels,
-        });
         self.recorded.targets_um.clear();
-        self.recorded.targets_um.extend(self.targets.iter().map(|&target| um(target)));
-        self.recorded.robots.clear();
-        self.recorded.robots.extend(robots);
+        self.recorded.targets_um.extend(self.scene.targets().iter().map(|target| target.map(um)));
+        for (state, pose) in self.recorded.robots.iter_mut().zip(&self.poses) {
+            state.position_um = um(pose.position);
+            state.heading_q14 = [unit_q14(pose.heading.x), unit_q14(pose.heading.y)];
+        }
         self.recorded.contacts = contacts;
     }
 }

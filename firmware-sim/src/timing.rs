@@ -24,7 +24,10 @@ pub struct Clock {
     /// True time for time by this clock.
     rate: f64,
     phase_us: u64,
-    ticks: u64,
+    /// Number of the next tick, what the clock shows then, and for how long it has gone on since the tick before.
+    tick: u64,
+    shown_ns: u64,
+    since_us: u32,
     next_us: u64,
 }
 
@@ -37,7 +40,8 @@ impl Clock {
         let phase = if in_phase { 0.0 } else { stream.unit() * tick_s };
         let phase_us = (phase * 1e6) as u64;
         let [tick_ns, resolution_ns] = [tick_s, resolution_s].map(|seconds| (seconds * 1e9 + 0.5) as u64);
-        Clock { tick_ns, resolution_ns: resolution_ns.max(1), rate, phase_us, ticks: 0, next_us: phase_us }
+        let since_us = (tick_ns / 1000) as u32;
+        Clock { tick_ns, resolution_ns, rate, phase_us, tick: 0, shown_ns: 0, since_us, next_us: phase_us }
     }
 
     /// When the robot thinks next, microseconds since the start.
@@ -45,22 +49,18 @@ impl Clock {
         self.next_us
     }
 
-    /// What this clock shows at tick number `tick`, nanoseconds: the last of its steps.
-    fn shown_ns(&self, tick: u64) -> u64 {
-        tick * self.tick_ns / self.resolution_ns * self.resolution_ns
-    }
-
     /// Goes on to the next tick; how long the one that begins now is by this clock since the last, microseconds.
     pub fn tick(&mut self) -> u32 {
-        let since = match self.ticks.checked_sub(1) {
-            Some(last) => self.shown_ns(self.ticks) - self.shown_ns(last),
-            None => self.tick_ns,
-        };
-        self.ticks += 1;
-        let next_ns = self.shown_ns(self.ticks);
-        self.next_us =
-            self.phase_us + if self.rate == 1.0 { next_ns / 1000 } else { (next_ns as f64 * self.rate * 1e-3) as u64 };
-        (since / 1000) as u32
+        let since_us = self.since_us;
+        self.tick += 1;
+        let exact_ns = self.tick * self.tick_ns;
+        // A coarse clock shows the last of its steps.
+        let shown_ns = if self.resolution_ns > 1 { exact_ns - exact_ns % self.resolution_ns } else { exact_ns };
+        self.since_us = ((shown_ns - self.shown_ns) / 1000) as u32;
+        self.shown_ns = shown_ns;
+        self.next_us = self.phase_us
+            + if self.rate == 1.0 { shown_ns / 1000 } else { (shown_ns as f64 * self.rate * 1e-3) as u64 };
+        since_us
     }
 }
 

@@ -18,7 +18,7 @@
 //!
 //! | bytes | content |
 //! |---|---|
-//! | 4 · 2 per target | x, y in micrometres (i32) |
+//! | 4 · 2 per target | x, y in micrometres (i32); -2^31 for both while it is not there |
 //! | 16 per robot | x, y in micrometres (i32), heading (cos, sin) in 2^-14, left and right command in steps/s (i16) |
 //! | 16 | peer events and wall events since the frame before, pairs in contact, robots at walls (u32) |
 //!
@@ -35,6 +35,8 @@ pub use header::TraceHeader;
 const MAGIC: &[u8; 8] = b"grntrace";
 /// The layout's version.
 pub const VERSION: u16 = 2;
+/// What stands for the place of a target that is not there.
+pub const NOT_THERE: [i32; 2] = [i32::MIN; 2];
 /// By how much the contacts of a frame in version 1 are shorter.
 const NARROWER: usize = 8;
 
@@ -42,7 +44,7 @@ const NARROWER: usize = 8;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     header: TraceHeader,
-    targets: Vec<[i32; 2]>,
+    targets: Vec<Option<[i32; 2]>>,
     robots: Vec<RobotState>,
     contacts: Vec<ContactCounts>,
 }
@@ -53,7 +55,7 @@ impl Trace {
         Trace { header, targets: Vec::new(), robots: Vec::new(), contacts: Vec::new() }
     }
 
-    fn push(&mut self, targets_um: &[[i32; 2]], robots: &[RobotState], contacts: ContactCounts) {
+    fn push(&mut self, targets_um: &[Option<[i32; 2]>], robots: &[RobotState], contacts: ContactCounts) {
         debug_assert_eq!(targets_um.len(), usize::from(self.header.targets));
         debug_assert_eq!(robots.len(), usize::from(self.header.robots));
         self.targets.extend_from_slice(targets_um);
@@ -134,7 +136,7 @@ impl Trace {
         out.extend(ticks_per_frame.to_le_bytes());
         out.extend((self.len() as u32).to_le_bytes());
         for frame in self.frames() {
-            for coordinate in frame.targets_um.iter().flatten() {
+            for coordinate in frame.targets_um.iter().flat_map(|target| target.unwrap_or(NOT_THERE)) {
                 out.extend(coordinate.to_le_bytes());
             }
             for robot in frame.robots {
@@ -198,7 +200,8 @@ impl Trace {
         trace.contacts.reserve_exact(frames);
         for _ in 0..frames {
             for _ in 0..targets {
-                trace.targets.push([reader.i32()?, reader.i32()?]);
+                let place = [reader.i32()?, reader.i32()?];
+                trace.targets.push((place != NOT_THERE).then_some(place));
             }
             for _ in 0..robots {
                 trace.robots.push(RobotState {
@@ -215,7 +218,7 @@ impl Trace {
     }
 
     /// Writes one line per target and robot and frame: `tick,kind,index,x_um,y_um,cos_q14,sin_q14,left,right`; a
-    /// target's last four columns are empty.
+    /// target's last four columns are empty, and there is no line of a target while it is not there.
     pub fn to_csv(&self) -> Vec<u8> {
         const LINE: usize = 48;
         let mut out = Vec::with_capacity(LINE * (self.targets.len() + self.robots.len() + 2));
@@ -224,13 +227,15 @@ impl Trace {
         let mut digits = itoa::Buffer::new();
         for frame in self.frames() {
             let tick = itoa::Buffer::new().format(frame.tick).to_owned();
-            for (index, [x, y]) in frame.targets_um.iter().enumerate() {
+            for (index, [x, y]) in
+                frame.targets_um.iter().enumerate().filter_map(|(index, place)| Some((index, (*place)?)))
+            {
                 out.extend(tick.as_bytes());
                 out.extend(b",target,");
                 out.extend(digits.format(index).as_bytes());
                 for number in [x, y] {
                     out.push(b',');
-                    out.extend(digits.format(*number).as_bytes());
+                    out.extend(digits.format(number).as_bytes());
                 }
                 out.extend(b",,,,\n");
             }

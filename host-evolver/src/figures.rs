@@ -1,14 +1,14 @@
 //! From models, worlds and runs to the plain data that figures are drawn from, and the pictures of a folder.
 
-use crate::evaluation::{Contours, Model, Snapshot, Tracer, World};
+use crate::evaluation::{Contours, Model, Moment, Snapshot, Tracer, World};
 use crate::evolve::{FrontMember, Individual, Objectives};
 use crate::files::Contents;
 use crate::model::describe;
 use crate::model::notation::Digits;
 use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
-use firmware_sim::geometry::Bounds;
+use firmware_sim::geometry::{Bounds, Polygon, Walls};
 use firmware_sim::metrics::Bearings;
-use firmware_sim::scenario::{Ring, Scenario};
+use firmware_sim::scenario::{Course, Ring, Scenario, Scene};
 use firmware_sim::trace::{Frame, RobotState, Trace, metres};
 use grn_core::blob::Blob;
 use grn_core::geometry::Point;
@@ -57,12 +57,12 @@ fn pairs(points: &[Point<f64>]) -> Vec<[f64; 2]> {
     points.iter().copied().map(pair).collect()
 }
 
-fn walls(scenario: &Scenario) -> Vec<Vec<[f64; 2]>> {
-    scenario.walls().polygons().iter().map(|polygon| pairs(polygon.vertices())).collect()
+fn outlines(polygons: &[Polygon]) -> Vec<Vec<[f64; 2]>> {
+    polygons.iter().map(|polygon| pairs(polygon.vertices())).collect()
 }
 
 fn paths(scenario: &Scenario) -> Vec<Vec<[f64; 2]>> {
-    scenario.paths().iter().map(|path| pairs(path.points())).collect()
+    scenario.targets().iter().map(|target| pairs(target.path().points())).collect()
 }
 
 /// f2 of a circle midway between d_min and d_max around one target, far from every wall: 2 / (1 + e^(k (d_max - d_min) / 2)).
@@ -163,7 +163,7 @@ pub fn pattern(world: &World, model: &Model) -> Result<String, FigureError> {
     let panel = |(index, (snapshot, contours)): (usize, (&Snapshot, Contours))| grn_figures::Panel {
         title: format!("snapshot {index}"),
         window: None,
-        walls: walls(scenario),
+        walls: snapshot.walls().polygons().map(|polygon| pairs(polygon.vertices())).collect(),
         targets: snapshot
             .targets
             .iter()
@@ -204,16 +204,22 @@ pub fn run(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &B
     let radius = Some(simulation.ring_radius_m).filter(|radius| radius.is_finite());
     let window = window_around(trajectories.iter().flatten().copied(), radius.map(|radius| 1.5 * radius));
     let ruler = PatternRuler::new(blob, scenario).ok();
+    let course = trace.header().course(&world);
+    let mut scene = Scene::of(scenario, 0.0);
+    let mut radial_error = |seconds: f64, frame: &Frame<'_>| {
+        scene.move_to(scenario, course.time_at(seconds));
+        median_error(frame, ruler.as_ref(), scene.walls())
+    };
     grn_figures::trace(&grn_figures::TraceFigure {
         window,
-        walls: walls(&world),
+        walls: outlines(world.fixed_walls().fixed()),
         target_paths: paths(&world),
         trajectories,
         body_radius: BODY_RADIUS,
-        instants: instants(&frames, trace, scenario, blob),
+        instants: instants(&frames, trace, scenario, blob, &course),
         times: sampled.iter().map(|(time, _)| *time).collect(),
-        gaps: gaps(&sampled, scenario.paths().len()),
-        radial_error: sampled.iter().map(|(_, frame)| median_error(frame, ruler.as_ref())).collect(),
+        gaps: gaps(&sampled, scenario.targets().len()),
+        radial_error: sampled.iter().map(|&(seconds, frame)| radial_error(seconds, frame)).collect(),
         radial_band: radius.map(|radius| ENOUGH_ACCURACY * radius),
     })
 }
@@ -226,19 +232,21 @@ fn window_around(points: impl Iterator<Item = [f64; 2]>, margin: Option<f64>) ->
     Window { min: low.map(|edge| edge - margin), max: high.map(|edge| edge + margin) }
 }
 
-fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<f64>> {
+/// `None` while the target is not there.
+fn gaps(sampled: &[(f64, &Frame<'_>)], targets: usize) -> Vec<Vec<Option<f64>>> {
     let mut bearings = Bearings::default();
     let mut gap = |frame: &Frame<'_>, target: usize| {
-        bearings.take(metres(frame.targets_um[target]), frame.robots.iter().map(|robot| metres(robot.position_um)));
-        bearings.largest_gap().to_degrees()
+        let target = metres(frame.targets_um[target]?);
+        bearings.take(target, frame.robots.iter().map(|robot| metres(robot.position_um)));
+        Some(bearings.largest_gap().to_degrees())
     };
     (0..targets).map(|target| sampled.iter().map(|(_, frame)| gap(frame, target)).collect()).collect()
 }
 
 /// `None` where no robot finds the pattern.
-fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> Option<f64> {
-    let targets: Vec<_> = frame.targets_um.iter().map(|&target| metres(target)).collect();
-    let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets));
+fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>, walls: &Walls) -> Option<f64> {
+    let targets: Vec<_> = frame.targets_um.iter().flatten().map(|&target| metres(target)).collect();
+    let distance = |position| ruler.and_then(|ruler| ruler.distance(metres(position), &targets, walls));
     // As in the metrics, an unknown distance is longer than any other.
     let known = |robot: &RobotState| distance(robot.position_um).unwrap_or(f64::INFINITY);
     let mut errors: Vec<f64> = frame.robots.iter().map(known).collect();
@@ -246,7 +254,13 @@ fn median_error(frame: &Frame<'_>, ruler: Option<&PatternRuler<'_>>) -> Option<f
     errors.get(errors.len() / 2).copied().filter(|error| error.is_finite())
 }
 
-fn instants(frames: &[Frame<'_>], trace: &Trace, scenario: &Scenario, blob: &Blob) -> Vec<grn_figures::Instant> {
+fn instants(
+    frames: &[Frame<'_>],
+    trace: &Trace,
+    scenario: &Scenario,
+    blob: &Blob,
+    course: &Course,
+) -> Vec<grn_figures::Instant> {
     let Some(last) = frames.len().checked_sub(1) else { return Vec::new() };
     let seconds = trace.seconds(last).floor();
     let whole_second = |instant: usize| (seconds * instant as f64 / (INSTANTS - 1) as f64).round();
@@ -259,8 +273,11 @@ fn instants(frames: &[Frame<'_>], trace: &Trace, scenario: &Scenario, blob: &Blo
         let point = metres(*target);
         Point::new(point.x / scale, point.y / scale)
     };
-    let moments = places.iter().map(|&place| frames[place].targets_um.iter().map(unscaled).collect()).collect();
-    let world = World::at(scenario.clone(), moments);
+    let moment = |&place: &usize| {
+        let targets = frames[place].targets_um.iter().flatten().map(unscaled).collect();
+        Moment { targets, walls: scenario.walls_at(course.time_at(trace.seconds(place))) }
+    };
+    let world = World::at(scenario.clone(), places.iter().map(moment).collect());
     let model = Model::new(&blob.network, f64::from(blob.level_fraction)).ok();
     let mut tracer = Tracer::new(&world);
     let rings: Vec<Contours> = model
@@ -278,7 +295,11 @@ fn instants(frames: &[Frame<'_>], trace: &Trace, scenario: &Scenario, blob: &Blo
                 heading: heading(robot.heading_q14),
             })
             .collect(),
-        targets: frames[place].targets_um.iter().map(|&target| pair(metres(target))).collect(),
+        targets: frames[place].targets_um.iter().flatten().map(|&target| pair(metres(target))).collect(),
+        walls: outlines(world.snapshots()[number].walls().moving())
+            .into_iter()
+            .map(|outline| outline.into_iter().map(|[x, y]| [x * scale, y * scale]).collect())
+            .collect(),
         contours: rings.get(number).map(|contours| contours.rings.iter().map(scaled).collect()).unwrap_or_default(),
     };
     places.iter().enumerate().map(instant).collect()

@@ -6,8 +6,8 @@ use firmware_sim::config::SwarmConfig;
 use firmware_sim::faults::{Absences, FaultPlan};
 use firmware_sim::geometry::Walls;
 use firmware_sim::lab::Laboratory;
-use firmware_sim::metrics::{Meter, Metrics, MetricsOptions, PatternDistance};
-use firmware_sim::scenario::Scenario;
+use firmware_sim::metrics::{Meter, Metrics, MetricsOptions, PatternDistance, WallsOfRun};
+use firmware_sim::scenario::{Course, Scenario, Scene};
 use firmware_sim::swarm::{Outcome, Progress, StepError, Swarm};
 use firmware_sim::trace::Observer;
 use grn_core::blob::{Blob, Identity};
@@ -187,7 +187,7 @@ pub(crate) fn run<B: Brain>(
     check_length(scenario, &config).map_err(SimulationError::Config)?;
     let mut swarm = Swarm::new(scenario, config.clone(), brain).map_err(SimulationError::Config)?;
     let end = swarm.arrival_tick();
-    let marks = Marks::of(scenario, &config, swarm.faults());
+    let marks = Marks::of(swarm.world().clone(), &config, swarm.faults());
     let mut meter = meter(&ruler, &marks, TICKS_PER_SECOND);
     let share = |progress: Progress| progress.tick as f64 / progress.end.max(1) as f64;
     let outcome = swarm.run(end, &mut (&mut meter, observer), |progress| watch(share(progress)));
@@ -201,19 +201,22 @@ pub(crate) fn run<B: Brain>(
 
 /// What a [`meter`] of a run borrows.
 pub struct Marks {
-    walls: Walls,
+    world: Scenario,
+    course: Course,
     absences: Absences,
     disturbances: Vec<u64>,
 }
 
 impl Marks {
-    /// Of a run with this configuration, in which this goes wrong.
-    pub fn of(scenario: &Scenario, config: &SwarmConfig, faults: &FaultPlan) -> Self {
-        Marks {
-            walls: scenario.walls().scaled(config.scale),
-            absences: faults.absences(),
-            disturbances: faults.disturbances(),
-        }
+    /// Of a run in `world`, which is in real metres, with this configuration, in which this goes wrong.
+    pub fn of(world: Scenario, config: &SwarmConfig, faults: &FaultPlan) -> Self {
+        let course = Course::of(&world, config);
+        let tick = |time: f64| (course.seconds_at(time) * f64::from(TICKS_PER_SECOND)).ceil() as u64;
+        let mut disturbances = faults.disturbances();
+        disturbances.extend(world.changes().into_iter().map(tick));
+        disturbances.sort_unstable();
+        disturbances.dedup();
+        Marks { world, course, absences: faults.absences(), disturbances }
     }
 }
 
@@ -224,13 +227,17 @@ pub fn meter<'a>(
     ticks_per_second: u16,
 ) -> Meter<'a, impl PatternDistance> {
     let options = MetricsOptions {
-        walls: &marks.walls,
+        walls: WallsOfRun::Changing(&marks.world, marks.course),
         ring_radius_m: ruler.ring_radius(),
         ticks_per_second,
         disturbances: &marks.disturbances,
         absences: &marks.absences,
     };
-    Meter::new(options, |robot, targets: &[Point<f64>]| ruler.distance(robot, targets))
+    let mut scene = Scene::of(ruler.scenario, 0.0);
+    Meter::new(options, move |robot, targets: &[Point<f64>], seconds| {
+        scene.move_to(ruler.scenario, marks.course.time_at(seconds));
+        ruler.distance(robot, targets, scene.walls())
+    })
 }
 
 /// The longest run, simulated hours; who asks for more has mistyped a speed.
@@ -242,10 +249,10 @@ const MOST_HOURS: f64 = 1000.0;
 /// [`InputError`] that says which speed is possible.
 pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
     let most_seconds = MOST_HOURS * 3600.0;
-    let path = scenario.longest_path() * config.scale;
-    if path / config.target_speed_m_per_s + config.settle_s <= most_seconds {
+    if scenario.travel_s(config.target_speed_m_per_s / config.scale) + config.settle_s <= most_seconds {
         return Ok(());
     }
+    let path = scenario.longest_path() * config.scale;
     // Rounded up, so that the speed that is named is possible.
     let least = (path / (most_seconds - config.settle_s) * 1e9).ceil() / 1e9;
     let way_out = format!(
@@ -275,7 +282,7 @@ impl<'s> PatternRuler<'s> {
         let model = Model::new(&blob.network, f64::from(blob.level_fraction))?;
         let field = blob.field.field(1.0);
         let ring_radius = model.pattern().free_space_radius(model.network(), &field).unwrap_or(f64::INFINITY);
-        let merged = merged_ring_radius(blob.field.kernel, ring_radius, field.target_width(), scenario.paths().len());
+        let merged = merged_ring_radius(blob.field.kernel, ring_radius, field.target_width(), scenario.targets().len());
         Ok(PatternRuler {
             model,
             field,
@@ -293,14 +300,14 @@ impl<'s> PatternRuler<'s> {
 
     /// Distance from `robot` to the nearest candidate point, all in world metres. `None` where none is found, and where the
     /// one that is found is farther from every target than two ring radii (more with several targets, whose rings merge):
-    /// the contour is open there and follows the walls away from the targets, so it encloses none.
-    pub fn distance(&self, robot: Point<f64>, targets: &[Point<f64>]) -> Option<f64> {
+    /// the contour is open there and follows the walls away from the targets, so it encloses none. `walls` are those of the
+    /// scenario, in its metres, at that moment.
+    pub fn distance(&self, robot: Point<f64>, targets: &[Point<f64>], walls: &Walls) -> Option<f64> {
         let unscaled = |point: Point<f64>| Vector::new(point.x / self.scale, point.y / self.scale);
         let start = unscaled(robot);
         let targets: Vec<_> = targets.iter().map(|&target| unscaled(target)).collect();
         let pattern = self.model.pattern();
         let longest = self.field.target_width() / 4.0;
-        let walls = self.scenario.walls();
         let found = pattern.nearest_candidate(self.model.network(), &self.field, &targets, walls, start, longest)?;
         let near_target = targets.iter().any(|&target| (found - target).length() <= self.reach);
         near_target.then(|| (found - start).length() * self.scale)

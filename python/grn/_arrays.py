@@ -8,6 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 
+NOT_THERE = np.iinfo(np.int32).min
+"""Stands for both coordinates of a target that is not there."""
+
+
 class Arrays:
     """As `Simulation` describes them; `header` holds what the trace is of."""
 
@@ -17,7 +21,8 @@ class Arrays:
 
         robots, targets = flat["robots"], flat["targets"]
         self.positions: npt.NDArray[np.float64] = shaped("positions_um", "<i4", robots, 2) * 1e-6
-        self.targets: npt.NDArray[np.float64] = shaped("targets_um", "<i4", targets, 2) * 1e-6
+        places = shaped("targets_um", "<i4", targets, 2)
+        self.targets: npt.NDArray[np.float64] = np.where(places == NOT_THERE, np.nan, places * 1e-6)
         cos_sin = shaped("headings_q14", "<i2", robots, 2).astype(float)
         self.headings: npt.NDArray[np.float64] = np.arctan2(cos_sin[..., 1], cos_sin[..., 0])
         self.wheels: npt.NDArray[np.int16] = shaped("wheels", "<i2", robots, 2)

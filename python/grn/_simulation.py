@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._arrays import Arrays
+from ._arrays import NOT_THERE, Arrays
 from ._laboratory import assignments
 
 BlobLike = Union[_native.Blob, str, "PathLike[str]"]
@@ -33,7 +33,7 @@ class Simulation:
         positions: moments x robots x 2, metres.
         headings: moments x robots, radians, anticlockwise from east.
         wheels: moments x robots x 2 (left, right), the commands that led there, motor steps per second.
-        targets: moments x targets x 2, metres.
+        targets: moments x targets x 2, metres; NaN while one is not there.
         contacts: moments x 4: pairs and robots at walls that began to touch, and that touch.
     """
 
@@ -171,12 +171,14 @@ def measure(
         blob: the controller that drove, or the path of its file.
         scenario: the world in which it drove, or the path of its file.
         positions: moments x robots x 2, metres in the world.
-        targets: moments x targets x 2, metres in the world.
+        targets: moments x targets x 2, metres in the world; NaN while one is not there.
         contacts: moments x 4, as in `Simulation`; none if they are not given.
         scale: world metres per scenario metre; the blob's if it is not given.
         ticks_per_second: moments per second.
     """
-    robots, places = _micrometres("positions", positions), _micrometres("targets", targets)
+    robots = _micrometres("positions", positions)
+    absent = np.isnan(np.asarray(targets, dtype=float))
+    places = np.where(absent, NOT_THERE, _micrometres("targets", np.where(absent, 0.0, targets))).astype("<i4")
     touched = np.zeros((len(robots), 4)) if contacts is None else np.asarray(contacts)
     if touched.shape != (len(robots), 4) or len(places) != len(robots):
         raise _native.GrnError(

@@ -3,7 +3,7 @@
 use crate::errors::{failed, refused};
 use firmware_sim::contacts::ContactCounts;
 use firmware_sim::scenario::Scenario;
-use firmware_sim::trace::{Frame, Observer, RobotState, Trace, TraceHeader};
+use firmware_sim::trace::{Frame, NOT_THERE, Observer, RobotState, Trace, TraceHeader};
 use host_evolver::simulation::Simulation;
 use host_evolver::{files, record};
 use pyo3::prelude::*;
@@ -52,7 +52,7 @@ pub fn trace_arrays(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyDict>
 }
 
 /// The header's fields, and flat little-endian arrays: `positions_um` (frames × robots × 2, i32), `headings_q14` (the same
-/// shape, i16), `wheels` (likewise, steps/s), `targets_um` (frames × targets × 2, i32), `contacts` (frames × 4, u32).
+/// shape, i16), `wheels` (likewise, steps/s), `targets_um` (frames × targets × 2, i32; -2^31 while one is not there), `contacts` (frames × 4, u32).
 fn arrays<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
     let TraceHeader {
         scenario,
@@ -83,7 +83,7 @@ fn arrays<'py>(py: Python<'py>, trace: &Trace) -> PyResult<Bound<'py, PyDict>> {
     put("positions_um", states().flat_map(|state| state.position_um).flat_map(i32::to_le_bytes).collect())?;
     put("headings_q14", states().flat_map(|state| state.heading_q14).flat_map(i16::to_le_bytes).collect())?;
     put("wheels", states().flat_map(|state| state.wheels).flat_map(i16::to_le_bytes).collect())?;
-    let targets = trace.frames().flat_map(|frame| frame.targets_um.iter().copied());
+    let targets = trace.frames().flat_map(|frame| frame.targets_um.iter().map(|place| place.unwrap_or(NOT_THERE)));
     put("targets_um", targets.flatten().flat_map(i32::to_le_bytes).collect())?;
     let contacts = trace.frames().map(|frame| frame.contacts);
     let counts = |c: ContactCounts| [c.peer_events, c.wall_events, c.peers, c.walls];
@@ -113,7 +113,9 @@ pub fn replay(
         return Err(refused("positions, targets and contacts must be of equally many moments"));
     }
     let mut robots_at = positions.as_chunks::<2>().0.chunks_exact(robots.max(1));
-    let mut targets_at = places.as_chunks::<2>().0.chunks_exact(targets.max(1));
+    let there = |&place: &[i32; 2]| (place != NOT_THERE).then_some(place);
+    let places: Vec<Option<[i32; 2]>> = places.as_chunks::<2>().0.iter().map(there).collect();
+    let mut targets_at = places.chunks_exact(targets.max(1));
     for (tick, &[peer_events, wall_events, peers, walls]) in (0..).zip(counts.as_chunks::<4>().0) {
         let here = robots_at.next().unwrap_or_default();
         let states = here.iter().map(|&position_um| RobotState { position_um, ..RobotState::default() });

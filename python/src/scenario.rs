@@ -2,7 +2,8 @@
 
 use crate::errors::{failed, refused};
 use crate::units::pair;
-use firmware_sim::scenario;
+use firmware_sim::geometry::Walls;
+use firmware_sim::scenario::{self, OBSTACLE_SPACING};
 use grn_core::geometry::Point;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -35,6 +36,10 @@ impl GivenScenario<'_> {
             GivenScenario::Path(path) => scenario::Scenario::load(path).map_err(|error| failed(&error)),
         }
     }
+}
+
+fn corners(walls: &Walls) -> Vec<Vec<Place>> {
+    walls.polygons().map(|wall| wall.vertices().iter().map(place).collect()).collect()
 }
 
 #[pymethods]
@@ -76,19 +81,37 @@ impl Scenario {
         self.inner.region().into()
     }
 
-    /// The walls' corners, one list a wall.
+    /// The corners of the walls that are always where they are drawn, one list a wall.
     #[getter]
     fn walls(&self) -> Vec<Vec<Place>> {
-        self.inner.walls().polygons().iter().map(|wall| wall.vertices().iter().map(place).collect()).collect()
+        corners(self.inner.fixed_walls())
+    }
+
+    /// The corners of all walls that are there after this share of the time, 0 to 1.
+    fn walls_at(&self, share: f64) -> Vec<Vec<Place>> {
+        corners(&self.inner.walls_at(share))
+    }
+
+    /// The times, shares of the run, at which a target or a wall comes or goes.
+    #[getter]
+    fn changes(&self) -> Vec<f64> {
+        self.inner.changes()
+    }
+
+    /// Whether a wall moves, comes or goes.
+    #[getter]
+    fn walls_change(&self) -> bool {
+        self.inner.walls_change()
     }
 
     /// The targets' paths, one list of points a target.
     #[getter]
     fn paths(&self) -> Vec<Vec<Place>> {
-        self.inner.paths().iter().map(|path| path.points().iter().map(place).collect()).collect()
+        self.inner.targets().iter().map(|target| target.path().points().iter().map(place).collect()).collect()
     }
 
-    /// Length of the longest path.
+    /// The longest way that anything would go in the whole run at its greatest speed: the length of the longest path, if all
+    /// targets move at constant speed.
     #[getter]
     fn longest_path(&self) -> f64 {
         self.inner.longest_path()
@@ -100,24 +123,30 @@ impl Scenario {
         (self.inner.ring().d_min, self.inner.ring().d_max)
     }
 
-    /// Where the targets are after this share of the time, 0 to 1.
-    fn targets_at(&self, share: f64) -> Vec<Place> {
-        self.inner.targets_at(share).iter().map(place).collect()
+    /// How long the run takes after settling if nothing is faster than this, seconds.
+    fn travel_s(&self, speed: f64) -> f64 {
+        self.inner.travel_s(speed)
     }
 
-    /// Points on the walls' outlines as mother robots see them, for a scenario in model metres: scale them, not it.
+    /// Where each target is after this share of the time, 0 to 1; `None` while it is not there.
+    fn targets_at(&self, share: f64) -> Vec<Option<Place>> {
+        self.inner.targets().iter().map(|target| target.at(share).as_ref().map(place)).collect()
+    }
+
+    /// Points on the outlines of `walls` as mother robots see them, for a scenario in model metres: scale them, not it.
     fn boundary_samples(&self) -> Vec<Place> {
-        self.inner.boundary_samples().iter().map(place).collect()
+        self.inner.fixed_walls().boundary_samples(OBSTACLE_SPACING).iter().map(place).collect()
     }
 
-    /// Distance from a place to the nearest wall, negative inside one; infinite without walls.
+    /// Distance from a place to the nearest of `walls`, negative inside one; infinite without walls.
     fn clearance(&self, position: &Bound<'_, PyAny>) -> PyResult<f64> {
         let [x, y] = pair("position", position)?;
-        Ok(self.inner.walls().signed_distance(Point::new(x, y)))
+        Ok(self.inner.fixed_walls().signed_distance(Point::new(x, y)))
     }
 
     fn __repr__(&self) -> String {
-        let (targets, walls) = (self.inner.paths().len(), self.inner.walls().polygons().len());
+        let walls = self.inner.fixed_walls().fixed().len() + self.inner.moving_walls().len();
+        let targets = self.inner.targets().len();
         format!("<Scenario {:?}: targets {targets}, walls {walls}>", self.inner.name())
     }
 }

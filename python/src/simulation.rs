@@ -112,13 +112,19 @@ pub fn measure(
     ticks_per_second: u16,
 ) -> PyResult<Run> {
     let (blob, scenario) = (scaled(blob.get()?, scale)?, scenario.get()?);
+    if scenario.walls_change() {
+        return Err(refused(format_args!(
+            "{}: what drove elsewhere is not measured among walls that move",
+            scenario.name()
+        )));
+    }
     let config = usual_config(blob.scale, Laboratory::default()).with_robots(robots.into());
     let header = TraceHeader { ticks_per_second, robots, targets, ..TraceHeader::of(&scenario, &config) };
     let world = scenario.clone();
     let ruler = PatternRuler::new(&blob, &world).map_err(|error| failed(&error))?;
     // What went wrong elsewhere is not told.
     let faults = FaultPlan::default();
-    let marks = Marks::of(&scenario, &config, &faults);
+    let marks = Marks::of(scenario.scaled(config.scale), &config, &faults);
     let mut meter = meter(&ruler, &marks, ticks_per_second);
     let mut recorder = Recorder::new(header.clone(), usize::MAX);
     py.detach(|| replay(&header, positions_um, targets_um, contacts, &mut (&mut meter, &mut recorder)))?;

@@ -69,7 +69,7 @@ fn pattern_agrees(world: &World, model: &Model, expected: &Value, name: &str) {
             let radius = snapshot.targets.iter().map(|&t| (point - t).length()).fold(f64::INFINITY, f64::min);
             radius_min = radius_min.min(radius);
             radius_max = radius_max.max(radius);
-            clearance_min = clearance_min.min(world.scenario().walls().signed_distance(point));
+            clearance_min = clearance_min.min(snapshot.walls().signed_distance(point));
         }
     }
     let list =

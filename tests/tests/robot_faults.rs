@@ -74,7 +74,7 @@ fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
     let (run, trace) = simulation("nand-xnor", "compound-channel", SwarmConfig { seed: 4, ..SwarmConfig::default() });
     let frame = trace.frames().last().unwrap();
     let away = frame.robots.iter().filter(|robot| {
-        let offset = [0, 1].map(|axis| f64::from(robot.position_um[axis] - frame.targets_um[0][axis]) * 1e-6);
+        let offset = [0, 1].map(|axis| f64::from(robot.position_um[axis] - frame.targets_um[0].unwrap()[axis]) * 1e-6);
         offset.map(|metres| metres * metres).iter().sum::<f64>().sqrt() > 2.0 * run.ring_radius_m
     });
     assert_eq!((away.count(), run.metrics.lost_robots), (12, 12));
@@ -166,7 +166,7 @@ fn left_behind_a_box<S: Scalar>(model: &str, seed: u64) -> usize {
     let mut swarm = Swarm::new(&scenario, config, brain).unwrap();
     swarm.run(swarm.arrival_tick(), &mut (), |_| ControlFlow::Continue(())).unwrap();
     let ring_radius = PatternRuler::new(&blob, &scenario).unwrap().ring_radius();
-    let away = |pose: &&Pose| (pose.position - swarm.targets()[0]).length() > 2.0 * ring_radius;
+    let away = |pose: &&Pose| (pose.position - swarm.scene().targets()[0].unwrap()).length() > 2.0 * ring_radius;
     swarm.poses().iter().filter(away).count()
 }
 

@@ -120,8 +120,9 @@ fn target(bless: bool) -> bool {
 /// The images, then robots that run them in a simulated swarm.
 fn images(bless: bool, tally: &mut Tally) -> bool {
     target::check(bless, tally);
-    let loops = ["--features", "qemu", "--test", "processor_in_the_loop", "--no-fail-fast"];
-    cargo_test(&[&["test", "--package", "grn-tests"], &loops[..]].concat(), tally)
+    // Of the workspace, not of the package alone: that would build all it depends on again, with fewer features.
+    let loops = ["--features", "grn-tests/qemu", "--test", "processor_in_the_loop", "--no-fail-fast"];
+    cargo_test(&[&["test", "--workspace"], &loops[..]].concat(), tally)
 }
 
 /// The C library's own tests, then its examples.

@@ -95,8 +95,8 @@ impl Environment {
 /// Builds the package and runs its tests, the short form of the comparison with MuJoCo among them.
 pub fn check(tally: &mut Tally) -> bool {
     let environment = match Environment::make(Build::Checked).and_then(|environment| {
-        // Made of what the package was made of: little is left to compile.
-        told(crate::this_cargo().args(["build", "--quiet", "--package", "host-evolver", "--bin", "grn"]))?;
+        // With the features that the whole workspace has, as the tests have built it before.
+        told(crate::this_cargo().args(["build", "--quiet", "--workspace", "--bin", "grn"]))?;
         Ok(environment)
     }) {
         Ok(environment) => environment,

@@ -215,14 +215,15 @@ fn run(starts: &[f64], instants: f64) -> TraceFigure {
             robots: (0..robots).map(pose).collect(),
             targets: (0..starts.len()).map(|j| target(j, t)).collect(),
             contours: (0..starts.len()).map(|j| ring(target(j, t), 1.6, 1.0)).collect(),
+            walls: Vec::new(),
         }
     };
     let times: Vec<f64> = (0..=240).map(|i| f64::from(i) * 0.5).collect();
     let gap = |j: usize| {
         let value = |(i, t): (usize, &f64)| {
-            62.0 + 210.0 * libm::exp(-t / (7.0 + j as f64 * 4.0)) + 9.0 * noise((i + 1000 * j) as u64)
+            Some(62.0 + 210.0 * libm::exp(-t / (7.0 + j as f64 * 4.0)) + 9.0 * noise((i + 1000 * j) as u64))
         };
-        times.iter().enumerate().map(value).collect::<Vec<f64>>()
+        times.iter().enumerate().map(value).collect::<Vec<_>>()
     };
     let error = |(i, t): (usize, &f64)| Some(0.9 * libm::exp(-t / 9.0) + 0.05 + 0.03 * noise(7000 + i as u64));
     TraceFigure {

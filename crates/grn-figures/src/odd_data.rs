@@ -151,6 +151,7 @@ proptest! {
             robots: robots.into_iter().map(|(position, heading)| Pose { position, heading }).collect(),
             targets,
             contours,
+            walls: Vec::new(),
         };
         let figure = TraceFigure {
             window,
@@ -160,7 +161,7 @@ proptest! {
             body_radius,
             instants: instants.into_iter().map(instant).collect(),
             times,
-            gaps: (0..targets).map(|target| steps.iter().map(|step| step.1[target]).collect()).collect(),
+            gaps: (0..targets).map(|target| steps.iter().map(|step| Some(step.1[target])).collect()).collect(),
             radial_error: steps.iter().map(|step| step.2).collect(),
             radial_band: band,
         };

@@ -167,11 +167,17 @@ impl Polygon {
     /// The polygon with every coordinate multiplied by a positive finite `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Polygon {
-        let vertices: Vec<Point<f64>> = self.vertices.iter().map(|&v| v * factor).collect();
+        Polygon { area: self.area * factor * factor, ..self.moved(|vertex| vertex * factor) }
+    }
+
+    /// The polygon after a motion: `moved` says where each point goes, and leaves distances as they are.
+    #[must_use]
+    pub fn moved(&self, moved: impl Fn(Point<f64>) -> Point<f64>) -> Polygon {
+        let vertices: Vec<Point<f64>> = self.vertices.iter().map(|&vertex| moved(vertex)).collect();
         let ends = vertices.iter().skip(1).chain(vertices.first());
         let edges = vertices.iter().zip(ends).map(|(&a, &b)| Edge::new(a, b)).collect();
-        let bounds = Bounds { low: self.bounds.low * factor, high: self.bounds.high * factor };
-        Polygon { vertices, edges, bounds, area: self.area * factor * factor }
+        let bounds = Bounds::around(vertices.iter().copied()).unwrap_or(self.bounds);
+        Polygon { vertices, edges, bounds, area: self.area }
     }
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use grn_core::field::Obstacles;
 
 fn polygon(points: &[(f64, f64)]) -> Result<Polygon, PolygonError> {
     Polygon::new(points.iter().map(|&(x, y)| Vector::new(x, y)).collect())

@@ -36,7 +36,7 @@ pub struct Laboratory {
     pub base: Option<String>,
     /// The swarm.
     pub robots: Robots,
-    /// What proximity sensors feel besides walls and robots.
+    /// What is solid besides walls and robots.
     pub bodies: Bodies,
     /// How robots learn where they are.
     pub localisation: Localisation,
@@ -66,12 +66,11 @@ pub struct Robots {
     pub mothers: usize,
 }
 
-/// `[bodies]`: what proximity sensors feel besides walls and robots.
+/// `[bodies]`: what is solid besides walls and robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Bodies {
-    /// Radius of a target as proximity sensors feel it, metres; 0 if targets are only places. It stops nobody: a robot that does not
-    /// keep away drives through.
+    /// Radius of a target's body, metres; 0 if targets are only places. Proximity sensors feel it, and it pushes robots away.
     pub target_radius_m: f64,
 }
 

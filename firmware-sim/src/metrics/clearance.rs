@@ -18,7 +18,7 @@ impl Clearance {
     }
 
     pub fn observe(&mut self, robots: impl Iterator<Item = Point<f64>>, walls: &Walls) {
-        if walls.polygons().is_empty() {
+        if walls.is_empty() {
             return;
         }
         for (robot, position) in robots.enumerate() {
@@ -35,6 +35,11 @@ impl Clearance {
                 None => self.looks.push(look),
             }
         }
+    }
+
+    /// For walls that have moved.
+    pub fn forget_places(&mut self) {
+        self.looks.clear();
     }
 
     /// Metres; `None` if there are no walls.

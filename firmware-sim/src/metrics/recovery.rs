@@ -47,11 +47,6 @@ impl Forming {
         self.since.filter(|_| self.formed)
     }
 
-    /// How many moments there were since then.
-    pub fn moments(&self) -> u64 {
-        self.moments
-    }
-
     /// Share of the moments from then on that were good.
     pub fn good_share(&self) -> Option<f64> {
         self.formed.then(|| self.good as f64 / self.moments as f64)

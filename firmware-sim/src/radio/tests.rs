@@ -23,13 +23,26 @@ fn line(places: &[f64]) -> Vec<Point<f64>> {
     places.iter().map(|&x| Vector::new(x, 0.0)).collect()
 }
 
+/// What is delivered to robot 0 in this frame.
+fn hear(
+    ether: &Ether,
+    receiver: &mut Receiver,
+    positions: &[Point<f64>],
+    frame: u64,
+    walls: &Walls,
+) -> heapless::Vec<Heard, MAX_HEARD> {
+    let mut heard = heapless::Vec::new();
+    ether.deliver(receiver, positions[0], frame * FRAME_US, &Obstruction { walls, positions }, &mut heard);
+    heard
+}
+
 /// What robot 0 hears in each of these frames, (sender, age), if all broadcast in frame 0 and it listens in every frame.
 fn heard_in(config: &lab::Radio, positions: &[Point<f64>], walls: &Walls, frames: u64) -> Vec<Vec<(u16, u16)>> {
     let mut ether = Ether::new(config, 1, positions.len());
     let mut receiver = ether.receiver(0);
     let mut listen = |frame: u64| {
         ether.begin(frame, positions);
-        let heard = ether.deliver(&mut receiver, positions[0], frame * FRAME_US, &Obstruction { walls, positions });
+        let heard = hear(&ether, &mut receiver, positions, frame, walls);
         if frame == 0 {
             (0..positions.len()).for_each(|sender| ether.send(sender, &Letter::of(&message(sender), 0)));
         }
@@ -89,8 +102,7 @@ fn who_thinks_seldom_hears_what_came_in_the_meantime_once() {
     for frame in 0..12 {
         ether.begin(frame, &positions);
         if frame % 4 == 3 {
-            let obstruction = Obstruction { walls: &open(), positions: &positions };
-            let heard = ether.deliver(&mut receiver, positions[0], frame * FRAME_US, &obstruction);
+            let heard = hear(&ether, &mut receiver, &positions, frame, &open());
             found.push(heard.iter().map(|heard| heard.message.sender).collect::<Vec<_>>());
         }
         if frame % 2 == 0 {
@@ -110,8 +122,7 @@ fn deliveries(config: &lab::Radio, count: u64) -> Vec<bool> {
     let mut receiver = ether.receiver(0);
     let one = |frame| {
         ether.begin(frame, &positions);
-        let obstruction = Obstruction { walls: &open(), positions: &positions };
-        let heard = ether.deliver(&mut receiver, positions[0], frame * FRAME_US, &obstruction);
+        let heard = hear(&ether, &mut receiver, &positions, frame, &open());
         ether.send(1, &Letter::of(&message(1), frame * FRAME_US));
         heard.iter().any(|heard| heard.message == message(1))
     };
@@ -176,8 +187,7 @@ fn a_crowd_with_heavy_losses_is_searched_to_the_end() {
     let mut receiver = ether.receiver(0);
     for frame in 0..1000 {
         ether.begin(frame, &positions);
-        let obstruction = Obstruction { walls: &open(), positions: &positions };
-        let heard = ether.deliver(&mut receiver, positions[0], frame * FRAME_US, &obstruction);
+        let heard = hear(&ether, &mut receiver, &positions, frame, &open());
         assert!(frame == 0 || heard.len() == MAX_HEARD);
         assert!(heard.windows(2).all(|pair| pair[0].message.sender < pair[1].message.sender));
         (0..40).for_each(|sender| ether.send(sender, &Letter::of(&message(sender), frame * FRAME_US)));

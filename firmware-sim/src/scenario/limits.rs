@@ -1,6 +1,6 @@
 //! What a scenario may hold at most: as much as can be judged and simulated in reasonable memory and time.
 
-use super::{Morphogen, OBSTACLE_SPACING, Ring};
+use super::{Morphogen, OBSTACLE_SPACING, Ring, Scenario};
 use grn_input::{InputError, Range};
 
 /// The most snapshots a scenario may ask for.
@@ -17,6 +17,8 @@ pub const LATTICE: [f64; 2] = [0.2, 5.0];
 const MAX_NODES: f64 = (1 << 22) as f64;
 /// The most nodes times snapshots: 8 bytes each, so 160 MB; a model is judged in about a tenth of a second.
 const MAX_NODE_SNAPSHOTS: f64 = 2e7;
+/// The same if walls change, so that what is known of them is kept for every snapshot: 43 bytes each.
+const MAX_CHANGING_NODE_SNAPSHOTS: f64 = MAX_NODE_SNAPSHOTS / 5.0;
 /// The most samples of the walls' outlines, and the most of them times snapshots: 16 bytes each, so 70 MB.
 const MAX_SAMPLES: f64 = 20_000.0;
 const MAX_SAMPLE_SNAPSHOTS: f64 = (1 << 22) as f64;
@@ -27,6 +29,8 @@ const MAX_TABLE: f64 = (1 << 20) as f64;
 pub const REGION: Range<f64> = Range::new(0.5, 3000.0, "metres");
 /// How far walls may stick out of the region.
 pub const WALL_OVERHANG: f64 = 100.0;
+/// How long a run may take, if the scenario says it.
+pub const DURATION: Range<f64> = Range::new(0.1, 3_600_000.0, "seconds");
 /// What a blob can hold.
 pub const WIDTH: Range<f64> = Range::new(0.01, 100.0, "metres (not centimetres)");
 /// What a blob can hold.
@@ -42,11 +46,25 @@ fn table_entries(distance: f64, steepness: f64) -> f64 {
     reach * reach * (10.0 * steepness).max(100.0)
 }
 
+fn lattice_nodes(region: [f64; 2]) -> f64 {
+    region.iter().map(|side| (side + 2.0 * LATTICE[1]) / LATTICE[0] + 9.0).product()
+}
+
+/// Whether walls that change can be kept for every snapshot.
+pub(super) fn check_changing_walls(world: &Scenario) -> Result<(), InputError> {
+    let most = (MAX_CHANGING_NODE_SNAPSHOTS / lattice_nodes(world.region())).floor();
+    if !world.walls_change() || world.snapshots() as f64 <= most {
+        return Ok(());
+    }
+    let expected = format!("with walls that move, come or go at most {most} fit into memory, or a smaller region");
+    Err(InputError::new("snapshots", world.snapshots(), expected))
+}
+
 pub(super) fn check_region(region: [f64; 2], snapshots: i64) -> Result<usize, InputError> {
     for (index, side) in region.into_iter().enumerate() {
         REGION.check(&format!("region[{index}]"), side)?;
     }
-    let nodes: f64 = region.iter().map(|side| (side + 2.0 * LATTICE[1]) / LATTICE[0] + 9.0).product();
+    let nodes = lattice_nodes(region);
     let show = format!("[{:?}, {:?}]", region[0], region[1]);
     if nodes > MAX_NODES {
         let expected =

@@ -107,13 +107,13 @@ impl Scenario {
         let [width, height] = self.region;
         let [least, greatest] = obstacles.radius;
         let wanted = obstacles.density * width * height;
-        let points: usize = self.targets.iter().map(|path| path.points().len()).sum();
+        let points: usize = self.targets.iter().map(|target| target.path.points().len()).sum();
         let (mut discs, mut covered, mut missed, mut comparisons) = (Vec::<Disc>::new(), 0.0, 0, 0);
         while covered < wanted {
             comparisons += points + discs.len();
             let radius = least + (greatest - least) * stream.unit();
             let disc = Disc { centre: Vector::new(width * stream.unit(), height * stream.unit()), radius };
-            let is_clear = self.targets.iter().all(|path| disc.is_clear_of(path, obstacles.clearance));
+            let is_clear = self.targets.iter().all(|target| disc.is_clear_of(&target.path, obstacles.clearance));
             if is_clear && !discs.iter().any(|other| disc.overlaps(other)) {
                 covered += TAU / 2.0 * radius * radius;
                 missed = 0;
@@ -133,7 +133,7 @@ impl Scenario {
         };
         let walls = discs.iter().enumerate().map(polygon).collect::<Result<_, _>>()?;
         let name = format!("{}-{}", self.name, obstacles.seed);
-        let world = Scenario { name, walls: Walls::new(walls), ..self.clone() };
+        let world = Scenario { name, fixed_walls: Walls::new(walls), moving_walls: Vec::new(), ..self.clone() };
         Scenario::try_from(ScenarioFile::from(world))
     }
 }
@@ -156,17 +156,17 @@ mod tests {
             assert_eq!(world, open().with_random_obstacles(&obstacles).unwrap());
             for step in 0..=500 {
                 for target in world.targets_at(f64::from(step) / 500.0) {
-                    let clearance = world.walls().signed_distance(target);
+                    let clearance = world.fixed_walls().signed_distance(target);
                     assert!(clearance >= SOME.clearance, "world {seed}: {clearance} m at {target:?}");
                 }
             }
-            let covered: f64 = world.walls().polygons().iter().map(Polygon::area).sum();
+            let covered: f64 = world.fixed_walls().polygons().map(Polygon::area).sum();
             let share = covered / (world.region()[0] * world.region()[1]);
             assert!((0.0495..0.0545).contains(&share), "world {seed} is covered to {share}");
             assert_eq!(Scenario::parse(&world.to_toml()).unwrap(), world);
         }
         let other = open().with_random_obstacles(&RandomObstacles { seed: 2, ..SOME }).unwrap();
-        assert_ne!(open().with_random_obstacles(&SOME).unwrap().walls(), other.walls());
+        assert_ne!(open().with_random_obstacles(&SOME).unwrap().fixed_walls(), other.fixed_walls());
     }
 
     #[test]

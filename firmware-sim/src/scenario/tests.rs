@@ -1,4 +1,6 @@
 use super::*;
+
+mod moving;
 use grn_core::geometry::Vector;
 
 const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");
@@ -26,7 +28,7 @@ fn the_repository_s_scenarios_load_and_round_trip() {
         let through_serde: Scenario = toml::from_str(&toml::to_string(&scenario).unwrap()).unwrap();
         assert_eq!(scenario, through_serde);
     }
-    assert_eq!(Scenario::parse(COMPOUND).unwrap().walls().polygons().len(), 11);
+    assert_eq!(Scenario::parse(COMPOUND).unwrap().fixed_walls().fixed().len(), 11);
     assert_eq!(channel().morphogen().kernel, Kernel::Gaussian);
     assert_eq!((channel().name(), channel().region(), channel().snapshots()), ("channel", [20.0, 20.0], 15));
 }
@@ -166,7 +168,7 @@ fn targets_move_by_arc_length_and_arrive_together() {
     assert_eq!(two.targets_at(1.0), [Vector::new(18.0, 10.0), Vector::new(12.0, 10.0)]);
     assert_eq!(two.targets_at(0.5), [Vector::new(10.75, 10.0), Vector::new(7.25, 10.0)]);
     assert_eq!(two.longest_path(), 14.5);
-    let snapshots = two.snapshot_targets();
+    let snapshots: Vec<_> = two.snapshot_times().map(|time| two.targets_at(time)).collect();
     assert_eq!((snapshots.len(), &snapshots[7]), (15, &two.targets_at(0.5)));
     assert_eq!(snapshots[14], two.targets_at(1.0));
     let bent = Path::new(vec![Vector::new(0.0, 0.0), Vector::new(3.0, 0.0), Vector::new(3.0, 1.0)]);
@@ -177,20 +179,21 @@ fn targets_move_by_arc_length_and_arrive_together() {
         (resting.at(1.0), resting.at(1.0), resting.at(0.0))
     );
     let one = Scenario::parse(&CHANNEL.replace("snapshots = 15", "snapshots = 1")).unwrap();
-    assert_eq!(one.snapshot_targets(), [vec![Vector::new(3.0, 10.0)]]);
+    assert_eq!(one.snapshot_times().collect::<Vec<_>>(), [0.0]);
 }
 
 #[test]
 fn obstacle_points_are_boundary_samples_near_targets() {
     let scenario = channel();
     // Each wall: 8 x 6 m, 28 m of outline, 56 samples from (6, 14) and (6, 0).
-    let samples = scenario.boundary_samples();
+    let walls = scenario.fixed_walls();
+    let samples = walls.boundary_samples(OBSTACLE_SPACING);
     assert_eq!(samples.len(), 112);
     assert_eq!(
         (samples[0], samples[1], samples[17]),
         (Vector::new(6.0, 14.0), Vector::new(6.5, 14.0), Vector::new(14.0, 14.5))
     );
-    let points = scenario.obstacle_points(&[Vector::new(10.0, 10.0)]);
+    let points = Scenario::obstacle_points(walls, &[Vector::new(10.0, 10.0)]);
     // On each side the edge 4 m away: x within 3 m of the target, 13 samples.
     assert_eq!(points.len(), 26);
     assert!(points.iter().all(|p| (p.y == 14.0 || p.y == 6.0) && (p.x - 10.0).abs() <= 3.0));
@@ -204,6 +207,6 @@ fn scaling_multiplies_lengths() {
     assert_eq!((scaled.ring().d_max, scaled.ring().steepness), (0.5, 40.0));
     assert_eq!(scaled.targets_at(0.0), [Vector::new(0.75, 2.5)]);
     assert_eq!(scaled.longest_path(), 3.5);
-    assert_eq!(scaled.walls().polygons()[0].vertices()[0], Vector::new(1.5, 3.5));
-    assert_eq!(scaled.walls().polygons()[0].area(), 3.0);
+    assert_eq!(scaled.fixed_walls().fixed()[0].vertices()[0], Vector::new(1.5, 3.5));
+    assert_eq!(scaled.fixed_walls().fixed()[0].area(), 3.0);
 }

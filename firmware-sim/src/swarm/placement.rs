@@ -1,7 +1,7 @@
 //! Where robots start.
 
 use crate::body::Pose;
-use crate::geometry::length_squared;
+use crate::geometry::{Walls, length_squared};
 use crate::random::{Component, Stream};
 use crate::scenario::Scenario;
 use core::f64::consts::TAU;
@@ -27,8 +27,10 @@ const PATIENCE: u32 = 200;
 /// at random, has no room.
 pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec<Pose>> {
     let mut stream = Stream::new(seed, Component::Placement, 0);
-    let centre = world.targets_at(0.0).first().copied()?;
-    let way = world.targets_at(FIRST_STRETCH).first().copied()? - centre;
+    let first = world.targets().iter().find(|target| target.presence().holds(0.0))?;
+    let centre = first.path().at(0.0);
+    let way = first.path().at(FIRST_STRETCH) - centre;
+    let walls = world.walls_at(0.0);
     let [inner, mut outer] = START_RING.map(|share| share * world.ring().d_max);
     let region = world.region();
     let region_reach = 2.0 * (region[0] + region[1] + centre.length());
@@ -42,7 +44,7 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
         let behind = if only_behind && bearing.dot(way) > 0.0 { -bearing } else { bearing };
         let position = centre + behind * radius;
         let heading = turned(stream.unit());
-        if free(world, &poses, position) {
+        if free(world, &walls, &poses, position) {
             poses.push(Pose { position, heading });
             misses = 0;
             continue;
@@ -65,13 +67,13 @@ pub(super) fn scattered(world: &Scenario, count: usize, seed: u64) -> Option<Vec
 
 /// Where a robot is set down that is carried away: [`CARRIED`] off, without a wall in between, turned anyhow; where it was, if
 /// there is no room.
-pub(super) fn carried(world: &Scenario, poses: &[Pose], from: Pose, stream: &mut Stream) -> Pose {
+pub(super) fn carried(world: &Scenario, walls: &Walls, poses: &[Pose], from: Pose, stream: &mut Stream) -> Pose {
     let [least, most] = CARRIED.map(|share| share * world.ring().d_max);
     for _ in 0..CARRIED_TRIES {
         let (way, heading) = (turned(stream.unit()), turned(stream.unit()));
         let distance = least + stream.unit() * (most - least);
         let position = from.position + way * distance;
-        if free(world, poses, position) && world.walls().ray(from.position, way, distance).is_none() {
+        if free(world, walls, poses, position) && walls.ray(from.position, way, distance).is_none() {
             return Pose { position, heading };
         }
     }
@@ -84,11 +86,11 @@ fn turned(share: f64) -> Vector<f64> {
     Vector::new(cos, sin)
 }
 
-fn free(world: &Scenario, poses: &[Pose], position: Point<f64>) -> bool {
+fn free(world: &Scenario, walls: &Walls, poses: &[Pose], position: Point<f64>) -> bool {
     let apart = 2.0 * BODY_RADIUS + CLEARANCE;
     let [east, north] = world.region();
     (0.0..=east).contains(&position.x)
         && (0.0..=north).contains(&position.y)
         && poses.iter().all(|pose| length_squared(pose.position - position) >= apart * apart)
-        && world.walls().signed_distance(position) >= BODY_RADIUS + CLEARANCE
+        && walls.signed_distance(position) >= BODY_RADIUS + CLEARANCE
 }

@@ -1,4 +1,5 @@
 mod faults;
+mod moving;
 
 use super::*;
 use crate::geometry::length_squared;
@@ -153,11 +154,14 @@ fn robots_start_free_and_near_the_target() {
         let swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
         let positions: Vec<_> = swarm.poses().iter().map(|pose| pose.position).collect();
         for (i, &p) in positions.iter().enumerate() {
-            assert!(swarm.walls().signed_distance(p) > BODY_RADIUS);
+            assert!(swarm.scene().walls().signed_distance(p) > BODY_RADIUS);
             assert!(positions[..i].iter().all(|&q| length_squared(p - q) > 4.0 * BODY_RADIUS * BODY_RADIUS));
-            let distance = (p - swarm.targets()[0]).length() / (2.0 * scale);
+            let distance = (p - swarm.scene().targets()[0].unwrap()).length() / (2.0 * scale);
             assert!(distance >= 0.3 && (robots > 30 || distance <= 1.6), "{distance}");
-            assert!(robots > 30 || p.x <= swarm.targets()[0].x, "the target goes east, robots start west of it");
+            assert!(
+                robots > 30 || p.x <= swarm.scene().targets()[0].unwrap().x,
+                "the target goes east, robots start west of it"
+            );
         }
     }
     let full = SwarmConfig { scale: 0.03, ..SwarmConfig::default() }.with_robots(250);
@@ -190,7 +194,7 @@ fn bodies_never_enter_walls_or_stay_inside_each_other() {
         wall_events += swarm.frame().contacts.wall_events;
         peer_events += swarm.frame().contacts.peer_events;
         for (i, pose) in swarm.poses().iter().enumerate() {
-            assert!(swarm.walls().signed_distance(pose.position) >= BODY_RADIUS - 1e-9, "{pose:?}");
+            assert!(swarm.scene().walls().signed_distance(pose.position) >= BODY_RADIUS - 1e-9, "{pose:?}");
             for other in &swarm.poses()[..i] {
                 closest = closest.min((pose.position - other.position).length());
             }
@@ -207,16 +211,16 @@ fn targets_rest_and_then_arrive_on_time() {
     let mut swarm = Swarm::new(&channel(), config, |_| Straight).unwrap();
     // 14 m at a quarter of the scale: 3.5 m in 35 s.
     assert_eq!(swarm.arrival_tick(), 37 * 32);
-    let mut before = swarm.targets()[0];
+    let mut before = swarm.scene().targets()[0].unwrap();
     for tick in 1..=swarm.arrival_tick() {
         swarm.step().unwrap();
-        let step = (swarm.targets()[0] - before).length();
+        let step = (swarm.scene().targets()[0].unwrap() - before).length();
         let expected = if tick <= 64 { 0.0 } else { 0.1 / 32.0 };
         assert!((step - expected).abs() < 1e-12, "{tick}: {step}");
-        before = swarm.targets()[0];
+        before = swarm.scene().targets()[0].unwrap();
     }
     assert!((before.x - 17.0 * 0.25).abs() < 1e-12);
-    assert_eq!(swarm.frame().targets_um, [[17_000_000 / 4, 10_000_000 / 4]]);
+    assert_eq!(swarm.frame().targets_um, [Some([17_000_000 / 4, 10_000_000 / 4])]);
 }
 
 #[test]

@@ -6,13 +6,14 @@ use crate::brain::{Brain, BrainError};
 use crate::config::SwarmConfig;
 use crate::far_sense::{Eye, FarSense, Seen};
 use crate::faults::Fault;
-use crate::geometry::{Walls, length_squared};
+use crate::geometry::length_squared;
 use crate::grid::{Grid, WallIndex};
 use crate::lab::Laboratory;
 use crate::localisation::{PoseError, Track, Tracker};
 use crate::proximity::{ALL_FREE, Gains, ProximityRing, ROBOT_REACH, WALL_REACH};
 use crate::radio::{Ether, Letter, Obstruction, Receiver};
 use crate::random::{Component, Stream};
+use crate::scenario::Scene;
 use crate::timing::{Clock, FRAME_US};
 use grn_core::geometry::Point;
 use grn_core::robot::Percept;
@@ -24,11 +25,10 @@ pub(super) struct Surroundings<'a> {
     pub lab: &'a Laboratory,
     pub frame: u64,
     pub positions: &'a [Point<f64>],
-    pub targets: &'a [Point<f64>],
+    pub scene: &'a Scene,
     pub samples: &'a [Point<f64>],
     pub sight_m: f64,
     pub grid: &'a Grid,
-    pub walls: &'a Walls,
     pub wall_index: &'a WallIndex,
     pub tracker: &'a Tracker,
     pub ring: &'a ProximityRing,
@@ -40,10 +40,6 @@ pub(super) struct Unit<B> {
     number: usize,
     pub brain: B,
     pub wheels: [i16; 2],
-    /// What it broadcasts in this frame.
-    pub letter: Option<Letter>,
-    /// Robots so near that bodies can meet in this frame.
-    pub near: Vec<u16>,
     ailments: Ailments,
     drive: Drive,
     clock: Clock,
@@ -71,8 +67,6 @@ impl<B: Brain> Unit<B> {
             number,
             brain,
             wheels: [0; 2],
-            letter: None,
-            near: Vec::with_capacity(16),
             ailments: Ailments::new(faults),
             drive: Drive::new(&BodyParameters::drawn(&lab.wheels, seed, number)),
             clock: Clock::new(&lab.timing, seed, number),
@@ -85,15 +79,20 @@ impl<B: Brain> Unit<B> {
         }
     }
 
-    /// One frame from `pose` on: thinks whenever its clock says so, and drives on in between.
+    /// One frame from `pose` on: thinks whenever its clock says so, and drives on in between. What it broadcasts, if anything;
+    /// `near` becomes the robots so near that bodies can meet.
     ///
     /// # Errors
     /// The brain's.
-    pub fn frame(&mut self, pose: &mut Pose, around: &Surroundings<'_>) -> Result<(), BrainError> {
+    pub fn frame(
+        &mut self,
+        pose: &mut Pose,
+        around: &Surroundings<'_>,
+        near: &mut Vec<u16>,
+    ) -> Result<Option<Letter>, BrainError> {
         let begin = around.frame * FRAME_US;
         let end = begin + FRAME_US;
-        self.letter = None;
-        self.find_near(pose, around);
+        self.find_near(pose, around, near);
         if self.ailments.change_in(around.frame) {
             if self.ailments.update(around.frame) {
                 self.brain.reboot()?;
@@ -103,18 +102,18 @@ impl<B: Brain> Unit<B> {
         around.tracker.measure(&mut self.track, begin, pose);
         if self.ailments.now().off {
             self.miss(around, end);
-            return Ok(());
+            return Ok(None);
         }
         let slip = self.slip_of_this_frame(around);
-        let mut now = begin;
+        let (mut now, mut letter) = (begin, None);
         while self.clock.next_us() < end {
             let next = self.clock.next_us();
             self.drive_on(pose, next - now, slip);
             now = next;
-            self.think(pose, around, now)?;
+            letter = self.think(pose, around, near, now)?.or(letter);
         }
         self.drive_on(pose, end - now, slip);
-        Ok(())
+        Ok(letter)
     }
 
     /// Passes a frame switched off: what came to it meanwhile is gone when it is on again.
@@ -127,12 +126,12 @@ impl<B: Brain> Unit<B> {
         around.ether.miss(&mut self.receiver);
     }
 
-    fn find_near(&mut self, pose: &Pose, around: &Surroundings<'_>) {
-        self.near.clear();
+    fn find_near(&self, pose: &Pose, around: &Surroundings<'_>, near: &mut Vec<u16>) {
+        near.clear();
         let own = self.number as u16;
         around.grid.within(pose.position, ROBOT_REACH * ROBOT_REACH, |other, _| {
             if other != own {
-                self.near.push(other);
+                near.push(other);
             }
         });
     }
@@ -156,33 +155,34 @@ impl<B: Brain> Unit<B> {
         *pose = self.drive.advanced(*pose, [left * share * slip[0], right * share * slip[1]]);
     }
 
-    fn think(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Result<(), BrainError> {
-        let percept = self.percept(pose, around, now_us);
+    fn think(
+        &mut self,
+        pose: &Pose,
+        around: &Surroundings<'_>,
+        near: &[u16],
+        now_us: u64,
+    ) -> Result<Option<Letter>, BrainError> {
+        let mut percept = Percept::nothing();
+        self.perceive(pose, around, near, now_us, &mut percept);
         let command = self.brain.tick(&percept)?;
         self.wheels = [command.left, command.right].map(|speed| speed.clamp(-MAX_WHEEL_SPEED, MAX_WHEEL_SPEED));
-        if let Some(message) = &command.broadcast
-            && !self.ailments.now().without_radio
-        {
-            self.letter = Some(Letter::of(message, now_us));
-        }
-        Ok(())
+        let broadcast = command.broadcast.filter(|_| !self.ailments.now().without_radio);
+        Ok(broadcast.map(|message| Letter::of(&message, now_us)))
     }
 
-    fn percept(&mut self, pose: &Pose, around: &Surroundings<'_>, now_us: u64) -> Percept {
-        let Seen { targets, obstacles } = self.far(pose.position, around);
-        let obstruction = Obstruction { walls: around.walls, positions: around.positions };
-        Percept {
-            elapsed_us: self.clock.tick(),
-            fix: around.tracker.newest(&mut self.track, now_us),
-            proximity: self.proximity(pose, around),
-            targets,
-            obstacles,
-            heard: if self.ailments.now().without_radio {
-                around.ether.miss(&mut self.receiver);
-                heapless::Vec::new()
-            } else {
-                around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction)
-            },
+    /// Fills an empty percept, in its place: it is large.
+    fn perceive(&mut self, pose: &Pose, around: &Surroundings<'_>, near: &[u16], now_us: u64, percept: &mut Percept) {
+        percept.elapsed_us = self.clock.tick();
+        percept.fix = around.tracker.newest(&mut self.track, now_us);
+        if self.far_sense.is_some() {
+            Seen { targets: percept.targets, obstacles: percept.obstacles } = self.far(pose.position, around);
+        }
+        percept.proximity = self.proximity(pose, around, near);
+        if self.ailments.now().without_radio {
+            around.ether.miss(&mut self.receiver);
+        } else {
+            let obstruction = Obstruction { walls: around.scene.walls(), positions: around.positions };
+            around.ether.deliver(&mut self.receiver, pose.position, now_us, &obstruction, &mut percept.heard);
         }
     }
 
@@ -191,12 +191,12 @@ impl<B: Brain> Unit<B> {
         let sighting = &around.lab.sighting;
         let error = if sighting.own_pose_error { self.track.error() } else { PoseError::NONE };
         let eye = Eye { position, range: around.sight_m, error, noise_m: sighting.noise_m };
-        far_sense.look(&eye, around.targets, around.samples, &mut self.noise)
+        far_sense.look(&eye, around.scene.targets(), around.samples, &mut self.noise)
     }
 
-    fn proximity(&mut self, pose: &Pose, around: &Surroundings<'_>) -> [u16; PROXIMITY_SENSORS] {
+    fn proximity(&mut self, pose: &Pose, around: &Surroundings<'_>, near: &[u16]) -> [u16; PROXIMITY_SENSORS] {
         let mut free = ALL_FREE;
-        for &other in &self.near {
+        for &other in near {
             around.ring.sense_body(pose, around.positions[usize::from(other)], BODY_RADIUS, &mut free);
         }
         for edge in around.wall_index.near(pose.position) {
@@ -206,7 +206,7 @@ impl<B: Brain> Unit<B> {
         }
         let target_radius = around.lab.bodies.target_radius_m;
         if target_radius > 0.0 {
-            for &target in around.targets {
+            for &target in around.scene.targets().iter().flatten() {
                 around.ring.sense_body(pose, target, target_radius, &mut free);
             }
         }

@@ -19,8 +19,8 @@ pub struct RobotState {
 pub struct Frame<'a> {
     /// How many ticks led here; 0 at the start.
     pub tick: u64,
-    /// Targets' positions, micrometres.
-    pub targets_um: &'a [[i32; 2]],
+    /// Targets' positions, micrometres; `None` while a target is not there.
+    pub targets_um: &'a [Option<[i32; 2]>],
     /// The robots.
     pub robots: &'a [RobotState],
     /// Contacts in the tick that ended here; in a trace that has not every tick, events are those since the frame before.

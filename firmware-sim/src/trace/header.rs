@@ -1,7 +1,7 @@
 //! What a trace is of.
 
 use crate::config::SwarmConfig;
-use crate::scenario::Scenario;
+use crate::scenario::{Course, Scenario};
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 
 const TARGET_BYTES: usize = 8;
@@ -46,8 +46,13 @@ impl TraceHeader {
             ticks_per_frame: 1,
             robots: config.lab.robots.count as u16,
             mothers: config.lab.robots.mothers as u16,
-            targets: scenario.paths().len() as u16,
+            targets: scenario.targets().len() as u16,
         }
+    }
+
+    /// When in the run its world, which is in real metres, is at which time.
+    pub fn course(&self, world: &Scenario) -> Course {
+        Course::new(self.settle_s, world.travel_s(self.target_speed_m_per_s))
     }
 
     /// What a frame takes, in memory and in the layout.

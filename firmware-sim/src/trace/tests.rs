@@ -20,7 +20,7 @@ pub(crate) fn trace_of(frames: &[(Places, Places)]) -> Trace {
     });
     let robot = |p| RobotState { position_um: um(p), heading_q14: [16384, -1], wheels: [-7, 300] };
     for (targets, robots) in frames {
-        let targets: Vec<[i32; 2]> = targets.iter().map(um).collect();
+        let targets: Vec<_> = targets.iter().map(um).map(Some).collect();
         let robots: Vec<RobotState> = robots.iter().map(robot).collect();
         trace.push(&targets, &robots, ContactCounts { peer_events: 1, wall_events: 2, peers: 3, walls: 4 });
     }

@@ -65,7 +65,7 @@ impl Grid {
         for node in 0..columns * rows {
             let point = grid.point(node);
             let x1 = snapshot.targets.iter().map(|&t| world.field().target_concentration((point - t).length())).sum();
-            let clearance = world.scenario().walls().signed_distance(point);
+            let clearance = snapshot.walls().signed_distance(point);
             let near = clearance.is_finite();
             let x2 = if near { world.field().obstacle_concentration(clearance.max(0.0)) } else { 0.0 };
             grid.errors.push(model.error(x1, x2));
@@ -176,7 +176,7 @@ pub fn evaluate(world: &World, snapshot: &Snapshot, plain: &Plain) -> [f64; 2] {
     };
     let to_targets = mean(&snapshot.targets, &|d| sig(d, ring.d_max) + sig(ring.d_min, d));
     let to_obstacles = mean(&snapshot.obstacle_points, &|d| sig(ring.d_obstacle, d));
-    let close = points.iter().filter(|&&p| world.scenario().walls().signed_distance(p) < 0.05).count() as f64;
+    let close = points.iter().filter(|&&p| snapshot.walls().signed_distance(p) < 0.05).count() as f64;
     [to_targets + to_obstacles, lost + close / points.len() as f64]
 }
 

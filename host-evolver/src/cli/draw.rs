@@ -90,18 +90,18 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 fn as_json(world: &World, model: &Model) -> Value {
     let mut tracer = Tracer::new(world);
     let snapshots = tracer.trace_all(model).enumerate();
-    let snapshots: Vec<Value> = snapshots.map(|(index, found)| snapshot_json(world, index, found)).collect();
+    let snapshots: Vec<Value> = snapshots.map(|(index, found)| snapshot_json(index, found)).collect();
     json!({ "scenario": world.scenario().name(), "snapshots": snapshots })
 }
 
-fn snapshot_json(world: &World, index: usize, (snapshot, contours): (&Snapshot, Contours)) -> Value {
+fn snapshot_json(index: usize, (snapshot, contours): (&Snapshot, Contours)) -> Value {
     let points = || contours.rings.iter().flatten();
     let radii = || {
         points().filter_map(|&point| {
             snapshot.targets.iter().map(|&target| (point - target).length()).min_by(f64::total_cmp)
         })
     };
-    let clearances = points().map(|&point| world.scenario().walls().signed_distance(point));
+    let clearances = points().map(|&point| snapshot.walls().signed_distance(point));
     let clearance = clearances.min_by(f64::total_cmp).filter(|clearance| clearance.is_finite());
     json!({
         "index": index,

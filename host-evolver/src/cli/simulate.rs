@@ -323,7 +323,12 @@ pub fn table(simulation: &Simulation) -> String {
     if !metrics.recoveries.is_empty() {
         let reformed = metrics.recoveries.iter().filter(|recovery| recovery.reformed_at_s.is_some()).count();
         let least = metrics.recoveries.iter().filter_map(|recovery| recovery.encircled_share).reduce(f64::min);
-        rows.push(("re-formed after faults", format!("{reformed} of {}", metrics.recoveries.len()), String::new(), ""));
+        rows.push((
+            "re-formed after disturbances",
+            format!("{reformed} of {}", metrics.recoveries.len()),
+            String::new(),
+            "",
+        ));
         rows.push(("then encircled, at least", percent(least), String::new(), ""));
     }
     rows.push(("works", String::new(), String::new(), mark(verdict.works())));

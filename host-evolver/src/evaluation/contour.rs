@@ -120,7 +120,7 @@ impl<M: Medium> Follower<M> {
         match view.table {
             Some(table) if M::KEEPS_INPUTS => {
                 let [x1, x2] = self.medium.inputs_at(view.snapshot, node);
-                self.know(node, table.at(x1, x2));
+                self.know(node, table.at(x1, x2), view);
             }
             _ => self.compute_run(node - node % WIDTH, view),
         }
@@ -132,12 +132,13 @@ impl<M: Medium> Follower<M> {
         let [x1, x2] = self.medium.inputs(view.snapshot, first);
         let errors = view.table.and_then(|table| table.sure_at(x1, x2)).unwrap_or_else(|| view.model.errors(x1, x2));
         for (lane, error) in errors.0.into_iter().enumerate() {
-            self.know(first + lane, error);
+            self.know(first + lane, error, view);
         }
     }
 
-    fn know(&mut self, node: NodeIndex, error: f64) {
-        self.errors[node] = if self.medium.site(node) == Site::Border { f64::NEG_INFINITY } else { error };
+    fn know(&mut self, node: NodeIndex, error: f64, view: View<'_>) {
+        self.errors[node] =
+            if self.medium.site(view.snapshot, node) == Site::Border { f64::NEG_INFINITY } else { error };
         self.known[node] = self.view;
     }
 
@@ -150,25 +151,25 @@ impl<M: Medium> Follower<M> {
     pub(super) fn finds_leak(&mut self, start: NodeIndex, threshold: f64, most: usize, view: View<'_>) -> bool {
         self.component += 1;
         self.frontier.clear();
-        self.approach(start);
+        self.approach(start, view);
         for _ in 0..most {
             let Some(Reverse((_, node))) = self.frontier.pop() else { return false };
-            if self.medium.site(node) == Site::Leak {
+            if self.medium.site(view.snapshot, node) == Site::Leak {
                 return true;
             }
             for direction in Direction::ALL {
                 let neighbour = self.medium.lattice().neighbour(node, direction);
                 if self.components[neighbour] != self.component && self.error(neighbour, view) >= threshold {
-                    self.approach(neighbour);
+                    self.approach(neighbour, view);
                 }
             }
         }
         false
     }
 
-    fn approach(&mut self, node: NodeIndex) {
+    fn approach(&mut self, node: NodeIndex, view: View<'_>) {
         self.components[node] = self.component;
-        let millimetres = (self.medium.clearance(node) * 1e3) as i32;
+        let millimetres = (self.medium.clearance(view.snapshot, node) * 1e3) as i32;
         self.frontier.push(Reverse((millimetres, node)));
     }
 
@@ -187,7 +188,7 @@ impl<M: Medium> Follower<M> {
 
     fn flood_at(&mut self, threshold: f64, view: View<'_>) -> Component {
         while let Some(node) = self.flood.pop() {
-            if self.medium.site(node) == Site::Leak {
+            if self.medium.site(view.snapshot, node) == Site::Leak {
                 return Component::Leaks;
             }
             for direction in Direction::ALL {
@@ -206,7 +207,7 @@ impl<M: Medium> Follower<M> {
         let mut found = Component::Closed;
         self.crossings.clear();
         while let Some(node) = self.flood.pop() {
-            if self.medium.site(node) == Site::Leak {
+            if self.medium.site(view.snapshot, node) == Site::Leak {
                 found = Component::Leaks;
                 if stop_at_leak {
                     return found;
@@ -334,7 +335,7 @@ impl<M: Medium> Follower<M> {
             let [x1, x2] = self.medium.inputs_along(view.snapshot, &filled, chord);
             let middle = view.model.errors(x1, x2);
             points.extend(edges.iter().enumerate().map(|(lane, &edge)| {
-                let t = if self.medium.is_creased(edge) {
+                let t = if self.medium.is_creased(view.snapshot, edge) {
                     root_between(inner[lane], outer[lane], |t| error(self.medium.along(edge, t)))
                 } else {
                     parabola_root([0.0, chord.0[lane], 1.0], [inner[lane], middle.0[lane], outer[lane]])
@@ -347,7 +348,7 @@ impl<M: Medium> Follower<M> {
             let [x1, x2] = self.medium.world().inputs_at_all(view.snapshot, points);
             view.model.errors(x1, x2)
         };
-        with_corners(ring, |point| self.medium.world().is_at_crease(point), errors)
+        with_corners(ring, |point| self.medium.world().is_at_crease(view.snapshot, point), errors)
     }
 }
 

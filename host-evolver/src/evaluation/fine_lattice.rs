@@ -5,14 +5,7 @@ use super::lattice::{LATTICE_STEP, Lattice, Site};
 use std::sync::OnceLock;
 
 /// Spacing of the fine lattice, metres.
-const FINE_STEP: f64 = LATTICE_STEP / 4.0;
-
-/// The fine lattice and the inputs computed on it so far. Threads share it: whoever computes a value, it is the same.
-#[derive(Debug)]
-pub(super) struct FineLattice {
-    pub(super) lattice: Lattice,
-    pub(super) runs: Vec<OnceLock<Box<Run>>>,
-}
+pub(super) const FINE_STEP: f64 = LATTICE_STEP / 4.0;
 
 /// x1 is kept for this many snapshots, which takes 5 KB a run of eight nodes; more would cost more memory than they save
 /// time.
@@ -28,10 +21,7 @@ pub(super) struct Run {
     pub(super) x1: Vec<OnceLock<Lanes>>,
 }
 
-impl FineLattice {
-    pub(super) fn over(region: [f64; 2]) -> FineLattice {
-        let lattice = Lattice::over(region, FINE_STEP);
-        let runs = lattice.nodes().step_by(WIDTH).map(|_| OnceLock::new()).collect();
-        FineLattice { lattice, runs }
-    }
+/// Room for the inputs at all nodes, of which none is computed yet. Threads share it: whoever computes a value, it is the same.
+pub(super) fn no_runs(fine: &Lattice) -> Vec<OnceLock<Box<Run>>> {
+    fine.nodes().step_by(WIDTH).map(|_| OnceLock::new()).collect()
 }

@@ -62,7 +62,7 @@ pub(super) fn evaluate_snapshot(world: &World, snapshot: &Snapshot, contours: &C
         let points = candidates(ring, CANDIDATES_PER_RING);
         to_targets += sum_over(&snapshot.targets, &points, &world.terms.target);
         to_obstacles += sum_over(&snapshot.obstacle_points, &points, &world.terms.obstacle);
-        close += points.iter().filter(|&&point| world.is_closer_than(point, SMALLEST_CLEARANCE)).count();
+        close += points.iter().filter(|&&point| world.is_closer_than(snapshot, point, SMALLEST_CLEARANCE)).count();
         count += points.len();
     }
     if count == 0 {

@@ -18,12 +18,12 @@ pub(super) trait Medium {
     /// (x1, x2) at one node.
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2];
     /// Signed distance to the nearest wall, metres, negative inside.
-    fn clearance(&self, node: NodeIndex) -> f64;
+    fn clearance(&self, snapshot: &Snapshot, node: NodeIndex) -> f64;
     /// What a pattern meets at a node.
-    fn site(&self, node: NodeIndex) -> Site;
+    fn site(&self, snapshot: &Snapshot, node: NodeIndex) -> Site;
 
     /// Whether the distance to the walls is far from linear along an edge.
-    fn is_creased(&self, edge: Edge) -> bool;
+    fn is_creased(&self, snapshot: &Snapshot, edge: Edge) -> bool;
 
     /// The point at the fraction `t` of the way along an edge.
     fn along(&self, edge: Edge, t: f64) -> Point<f64> {
@@ -37,10 +37,10 @@ pub(super) trait Medium {
     fn inputs_along(&self, snapshot: &Snapshot, edges: &[Edge; WIDTH], t: Lanes) -> [Lanes; 2] {
         let points = std::array::from_fn(|lane| self.along(edges[lane], t.0[lane]));
         let clearance = std::array::from_fn(|lane| {
-            let (from, to) = (self.clearance(edges[lane].from), self.clearance(edges[lane].to));
+            let (from, to) = (self.clearance(snapshot, edges[lane].from), self.clearance(snapshot, edges[lane].to));
             from + (to - from) * t.0[lane]
         });
-        [self.world().x1_at_all(snapshot, &points), self.world().x2_at_all(Lanes(clearance))]
+        [self.world().x1_at_all(snapshot, &points), self.world().x2_at_all(&snapshot.ground, Lanes(clearance))]
     }
 }
 
@@ -54,7 +54,7 @@ impl Medium for Kept<'_> {
         self.0
     }
     fn lattice(&self) -> &Lattice {
-        &self.0.lattice
+        &self.0.coarse
     }
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
         [0, 1].map(|input| Lanes(std::array::from_fn(|lane| f64::from(snapshot.inputs[first + lane][input]))))
@@ -62,15 +62,15 @@ impl Medium for Kept<'_> {
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         snapshot.inputs[node].map(f64::from)
     }
-    fn clearance(&self, node: NodeIndex) -> f64 {
-        self.0.clearance[node]
+    fn clearance(&self, snapshot: &Snapshot, node: NodeIndex) -> f64 {
+        snapshot.ground.clearance[node]
     }
-    fn site(&self, node: NodeIndex) -> Site {
-        self.0.sites[node]
+    fn site(&self, snapshot: &Snapshot, node: NodeIndex) -> Site {
+        snapshot.ground.sites[node]
     }
-    fn is_creased(&self, edge: Edge) -> bool {
+    fn is_creased(&self, snapshot: &Snapshot, edge: Edge) -> bool {
         let along_rows = edge.from.abs_diff(edge.to) == 1;
-        self.0.creases[edge.from.min(edge.to)][usize::from(!along_rows)]
+        snapshot.ground.creases[edge.from.min(edge.to)][usize::from(!along_rows)]
     }
 }
 
@@ -80,16 +80,17 @@ pub(super) struct Computed<'w>(pub &'w World);
 
 impl Computed<'_> {
     /// The run that holds a node.
-    fn run(&self, node: NodeIndex) -> &Run {
-        self.0.fine.runs[node / WIDTH].get_or_init(|| {
+    fn run<'s>(&self, snapshot: &'s Snapshot, node: NodeIndex) -> &'s Run {
+        let ground = &*snapshot.ground;
+        ground.runs[node / WIDTH].get_or_init(|| {
             let first = node - node % WIDTH;
-            let clearance = self.lattice().run(first).map(|point| self.0.clearance_at(point));
+            let clearance = self.lattice().run(first).map(|point| ground.clearance_at(point));
             let site = |lane: usize| Site::of(self.lattice(), first + lane, clearance[lane]);
             Box::new(Run {
                 clearance,
                 sites: std::array::from_fn(site),
-                x2: self.0.x2_at_all(Lanes(clearance)),
-                x1: vec![OnceLock::new(); self.0.snapshots().len().min(MOST_KEPT_SNAPSHOTS)],
+                x2: self.0.x2_at_all(ground, Lanes(clearance)),
+                x1: vec![OnceLock::new(); ground.snapshots.min(MOST_KEPT_SNAPSHOTS)],
             })
         })
     }
@@ -101,24 +102,24 @@ impl Medium for Computed<'_> {
         self.0
     }
     fn lattice(&self) -> &Lattice {
-        &self.0.fine.lattice
+        &self.0.fine
     }
     fn inputs(&self, snapshot: &Snapshot, first: NodeIndex) -> [Lanes; 2] {
-        let run = self.run(first);
+        let run = self.run(snapshot, first);
         let x1 = || self.0.x1_at_all(snapshot, &self.lattice().run(first));
-        [run.x1.get(snapshot.place).map_or_else(x1, |kept| *kept.get_or_init(x1)), run.x2]
+        [run.x1.get(snapshot.nth).map_or_else(x1, |kept| *kept.get_or_init(x1)), run.x2]
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
         self.0.inputs_at(snapshot, self.lattice().point(node))
     }
-    fn clearance(&self, node: NodeIndex) -> f64 {
-        self.run(node).clearance[node % WIDTH]
+    fn clearance(&self, snapshot: &Snapshot, node: NodeIndex) -> f64 {
+        self.run(snapshot, node).clearance[node % WIDTH]
     }
-    fn site(&self, node: NodeIndex) -> Site {
-        self.run(node).sites[node % WIDTH]
+    fn site(&self, snapshot: &Snapshot, node: NodeIndex) -> Site {
+        self.run(snapshot, node).sites[node % WIDTH]
     }
-    fn is_creased(&self, edge: Edge) -> bool {
-        let middle = self.0.clearance_at(self.along(edge, 0.5));
-        is_crease(self.clearance(edge.from), middle, self.clearance(edge.to))
+    fn is_creased(&self, snapshot: &Snapshot, edge: Edge) -> bool {
+        let middle = snapshot.ground.clearance_at(self.along(edge, 0.5));
+        is_crease(self.clearance(snapshot, edge.from), middle, self.clearance(snapshot, edge.to))
     }
 }

@@ -76,7 +76,7 @@ impl<'w> Tracer<'w> {
 
 /// The table to trace a model by in a world; `None` if none is accurate enough.
 pub(super) fn error_table_of(world: &World, model: &Model) -> Option<ErrorTable> {
-    ErrorTable::of(model, world.scenario().paths().len(), CHART_TOLERANCE)
+    ErrorTable::of(model, world.scenario().targets().len(), CHART_TOLERANCE)
 }
 
 /// What becomes of a target's component; `Closed` says which component it is.

@@ -22,6 +22,8 @@ pub struct Instant {
     pub targets: Vec<[f64; 2]>,
     /// The pattern: closed contours, metres.
     pub contours: Vec<Vec<[f64; 2]>>,
+    /// Obstacles that move, or are not always there, as they are then: closed polygons, metres.
+    pub walls: Vec<Vec<[f64; 2]>>,
 }
 
 /// A run.
@@ -29,7 +31,7 @@ pub struct Instant {
 pub struct TraceFigure {
     /// The part of the world to show.
     pub window: Window,
-    /// Obstacles, closed polygons, metres.
+    /// Obstacles that are always there, closed polygons, metres.
     pub walls: Vec<Vec<[f64; 2]>>,
     /// Paths of the targets, metres.
     pub target_paths: Vec<Vec<[f64; 2]>>,
@@ -41,8 +43,9 @@ pub struct TraceFigure {
     pub instants: Vec<Instant>,
     /// Times of the series below the map, seconds, increasing.
     pub times: Vec<f64>,
-    /// For each target, at each time, the largest angle between neighbouring robots as the target sees them, degrees.
-    pub gaps: Vec<Vec<f64>>,
+    /// For each target, at each time, the largest angle between neighbouring robots as the target sees them, degrees;
+    /// none while the target is not there.
+    pub gaps: Vec<Vec<Option<f64>>>,
     /// At each time, the median over robots of the distance to the pattern, metres; none where it is not known.
     pub radial_error: Vec<Option<f64>>,
     /// What counts as on the pattern: 10 % of its radius, metres; none for a pattern without one.

@@ -68,11 +68,12 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
         within(what, values.iter().copied(), (0.0, f64::INFINITY), "0 or more")
     };
     not_negative("radius or band", &[figure.body_radius, figure.radial_band.unwrap_or(0.0)])?;
+    // What is not known is given a good number, so that the index is the time's.
     for gaps in &figure.gaps {
-        finite("angular gap", gaps.iter().copied())?;
-        within("angular gap", gaps.iter().copied(), (0.0, 360.001), "from 0 to 360 degrees")?;
+        let gaps = || gaps.iter().map(|gap| gap.unwrap_or(0.0));
+        finite("angular gap", gaps())?;
+        within("angular gap", gaps(), (0.0, 360.001), "from 0 to 360 degrees")?;
     }
-    // An unknown error is given a good number, so that the index is the time's.
     let errors: Vec<f64> = figure.radial_error.iter().map(|error| error.unwrap_or(0.0)).collect();
     not_negative("radial error", &errors)?;
     finite_lines("wall", &figure.walls)?;
@@ -83,6 +84,7 @@ fn check(figure: &TraceFigure) -> Result<(), FigureError> {
         let poses = instant.robots.iter().flat_map(|r| [r.position[0], r.position[1], r.heading]);
         finite("", poses.chain(instant.targets.iter().flatten().copied()).chain([instant.time])).map_err(named)?;
         finite_lines("", &instant.contours).map_err(named)?;
+        finite_lines("", &instant.walls).map_err(named)?;
     }
     Ok(())
 }
@@ -102,6 +104,7 @@ mod tests {
             robots: vec![Pose { position: [4.0, 9.0], heading: 1.0 }],
             targets: vec![[5.0, 10.0]],
             contours: vec![ring.clone()],
+            walls: Vec::new(),
         };
         TraceFigure {
             window: Window { min: [0.0, 5.0], max: [20.0, 15.0] },
@@ -111,7 +114,7 @@ mod tests {
             body_radius: 0.035,
             instants: vec![instant(0.0), instant(40.0)],
             times: vec![0.0, 20.0, 40.0],
-            gaps: vec![vec![300.0, 80.0, 60.0], vec![200.0, 100.0, 70.0]],
+            gaps: vec![vec![Some(300.0), Some(80.0), Some(60.0)], vec![Some(200.0), Some(100.0), Some(70.0)]],
             radial_error: vec![Some(0.8), Some(0.2), Some(0.05)],
             radial_band: Some(0.12),
         }
@@ -169,7 +172,10 @@ mod tests {
             change(&mut bad);
             trace(&bad).unwrap_err()
         };
-        assert_eq!(refused(&|f| f.gaps[1][2] = f64::NAN), FigureError::NotFinite { what: "angular gap", index: 2 });
+        assert_eq!(
+            refused(&|f| f.gaps[1][2] = Some(f64::NAN)),
+            FigureError::NotFinite { what: "angular gap", index: 2 }
+        );
         let expected = FigureError::NotFinite { what: "instant", index: 1 };
         assert_eq!(refused(&|f| f.instants[1].robots[0].heading = f64::INFINITY), expected);
         assert!(matches!(refused(&|f| f.times[1] = 40.0), FigureError::OutOfRange { index: 2, .. }));

@@ -2,7 +2,7 @@
 
 use crate::canvas::format::num;
 use crate::canvas::paint::{Anchor, Font, Mark, Paint, Rect};
-use crate::canvas::style::{INK, LABEL, time_colour};
+use crate::canvas::style::{INK, LABEL, LIGHT, time_colour};
 use crate::canvas::svg::Svg;
 use crate::chart::legend::Key;
 use crate::chart::map::{View, frame_look, wall_look};
@@ -41,6 +41,13 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
     svg.open("map", "");
     svg.open_clip(&view.rect);
     view.walls(svg, &figure.walls);
+    for instant in &figure.instants {
+        let moving = view.path(&instant.walls, true);
+        if !moving.is_empty() {
+            let colour = time_colour(share(figure, instant.time));
+            svg.path(&moving, &Paint::stroke(&colour, 0.9).filled(LIGHT));
+        }
+    }
     let trajectories = view.path(&figure.trajectories, false);
     svg.path(&trajectories, &Paint::stroke("#BDBDBD", 0.35));
     let paths = view.path(&figure.target_paths, false);
@@ -75,6 +82,11 @@ pub(crate) fn map(svg: &mut Svg, figure: &TraceFigure, view: &View) {
         for point in instant.contours.iter().flatten() {
             let at = view.place(*point);
             taken.add_mark(at, 1.0, 2.0);
+        }
+        for wall in &instant.walls {
+            let corners: Vec<(f64, f64)> = wall.iter().map(|corner| view.place(*corner)).collect();
+            let next = corners.iter().skip(1).chain(corners.first());
+            corners.iter().zip(next).for_each(|(from, to)| taken.add_line(*from, *to, 2.0));
         }
     }
     for instant in &figure.instants {
@@ -145,6 +157,9 @@ pub(crate) fn entries(figure: &TraceFigure, enlarged: bool) -> Vec<(Key, &'stati
     }
     if !figure.walls.is_empty() {
         out.push((Key::Area(wall_look()), "wall"));
+    }
+    if figure.instants.iter().any(|i| !i.walls.is_empty()) {
+        out.push((Key::Area(Paint::stroke(&early, 0.9).filled(LIGHT)), "wall that moves or goes"));
     }
     out
 }

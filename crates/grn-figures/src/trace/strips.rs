@@ -24,14 +24,18 @@ pub(crate) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<
     };
     let mut lines = vec![level(&first, GAP_LIMIT)];
     for (i, values) in figure.gaps.iter().enumerate() {
-        let point = |(t, v): (&f64, &f64)| (*t, v.clamp(first.y.lo, first.y.hi));
-        lines.push(line(figure.times.iter().zip(values).map(point).collect(), series(i)));
+        let clamped = |gap: &Option<f64>| gap.map(|gap| gap.clamp(first.y.lo, first.y.hi));
+        lines
+            .extend(known(&figure.times, values.iter().map(clamped)).into_iter().map(|points| line(points, series(i))));
     }
     moments(svg, figure, &first);
     first.draw(svg, &lines)?;
     name_moments(svg, figure, &first);
     moments(svg, figure, &second);
-    let mut lines: Vec<Line> = known(figure).into_iter().map(|points| line(points, (INK, &[]))).collect();
+    let mut lines: Vec<Line> = known(&figure.times, figure.radial_error.iter().copied())
+        .into_iter()
+        .map(|points| line(points, (INK, &[])))
+        .collect();
     lines.extend(figure.radial_band.map(|band| level(&second, band)));
     second.draw(svg, &lines)?;
     note(svg, &first, GAP_LIMIT, "90°");
@@ -45,12 +49,12 @@ pub(crate) fn strips(svg: &mut Svg, figure: &TraceFigure, rect: Rect) -> Result<
     Ok(second.rect.bottom())
 }
 
-/// The radial error as lines that break off where it is not known.
-fn known(figure: &TraceFigure) -> Vec<Vec<(f64, f64)>> {
+/// Values over time as lines that break off where one is not known.
+fn known(times: &[f64], values: impl Iterator<Item = Option<f64>>) -> Vec<Vec<(f64, f64)>> {
     let mut lines: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
-    for (time, error) in figure.times.iter().zip(&figure.radial_error) {
-        match (error, lines.last_mut()) {
-            (Some(error), Some(line)) => line.push((*time, *error)),
+    for (time, value) in times.iter().zip(values) {
+        match (value, lines.last_mut()) {
+            (Some(value), Some(line)) => line.push((*time, value)),
             (None, Some(line)) if !line.is_empty() => lines.push(Vec::new()),
             _ => {}
         }
@@ -65,7 +69,7 @@ fn time_axis(figure: &TraceFigure) -> Axis {
 }
 
 fn gap_chart(figure: &TraceFigure, rect: Rect) -> Chart {
-    let most = figure.gaps.iter().flatten().copied().fold(0.0, f64::max);
+    let most = figure.gaps.iter().flatten().flatten().copied().fold(0.0, f64::max);
     let top = [120.0, 180.0, 270.0, 360.0].into_iter().find(|t| most <= *t).unwrap_or(360.0);
     let step = if top > 200.0 { 90.0 } else { 30.0_f64.max(top / 4.0) };
     let y = Axis::stepped(0.0, top, step);

@@ -203,7 +203,7 @@ fn a_robot_is_set_down_at_a_free_place_some_distance_off() {
         let d_max = 2.0 * 0.25;
         let carried = (after.position - before.position).length();
         assert!((0.49 * d_max..=1.51 * d_max).contains(&carried), "{carried}");
-        assert!(swarm.walls().signed_distance(after.position) > BODY_RADIUS);
+        assert!(swarm.scene().walls().signed_distance(after.position) > BODY_RADIUS);
         let others = swarm.poses().iter().enumerate().filter(|(robot, _)| *robot != PATIENT);
         let room = 4.0 * BODY_RADIUS * BODY_RADIUS;
         assert!(others.map(|(_, pose)| length_squared(pose.position - after.position)).all(|squared| squared > room));

@@ -1,0 +1,126 @@
+//! Walls that move, turn, come and go.
+
+use super::{Path, Presence};
+use crate::geometry::{Bounds, Polygon, length_squared};
+use grn_core::geometry::{Point, Vector};
+
+/// How a wall moves: a point of it follows a path, and the wall turns about that point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    path: Path,
+    turns_deg: Vec<f64>,
+}
+
+impl Motion {
+    /// `path` is timed, and `turns_deg` has an entry for each of its points.
+    pub(super) fn new(path: Path, turns_deg: Vec<f64>) -> Self {
+        debug_assert!(path.times().is_some() && path.points().len() == turns_deg.len());
+        Motion { path, turns_deg }
+    }
+
+    /// What the point about which the wall turns follows; the wall is drawn for its first point.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// By the path's points how far the wall has turned from how it is drawn, counter-clockwise, degrees.
+    pub fn turns_deg(&self) -> &[f64] {
+        &self.turns_deg
+    }
+
+    fn turn_deg_at(&self, time: f64) -> f64 {
+        let times = self.path.times().unwrap_or_default();
+        let next = times.partition_point(|&t| t <= time);
+        match (next.checked_sub(1), self.turns_deg.get(next)) {
+            (None, _) => self.turns_deg.first().copied().unwrap_or(0.0),
+            (Some(_), None) => self.turns_deg.last().copied().unwrap_or(0.0),
+            (Some(before), Some(&to)) => {
+                let from = self.turns_deg[before];
+                from + (to - from) * ((time - times[before]) / (times[next] - times[before]))
+            }
+        }
+    }
+
+    /// Where a point of the wall as it is drawn is at a time.
+    fn moved(&self, time: f64) -> impl Fn(Point<f64>) -> Point<f64> {
+        let drawn = self.path.points().first().copied().unwrap_or(Point::ZERO);
+        let (sin, cos) = libm::sincos(self.turn_deg_at(time).to_radians());
+        let now = self.path.at(time);
+        move |point| {
+            let arm = point - drawn;
+            now + Vector::new(arm.x * cos - arm.y * sin, arm.x * sin + arm.y * cos)
+        }
+    }
+}
+
+/// A wall that is not always where it is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingWall {
+    /// Its place among the scenario's walls, counted from 0.
+    pub(super) place: usize,
+    pub(super) drawn: Polygon,
+    pub(super) motion: Option<Motion>,
+    pub(super) presence: Presence,
+}
+
+impl MovingWall {
+    /// The wall as it is drawn.
+    pub fn drawn(&self) -> &Polygon {
+        &self.drawn
+    }
+
+    /// How it moves, if it does.
+    pub fn motion(&self) -> Option<&Motion> {
+        self.motion.as_ref()
+    }
+
+    /// When it is there.
+    pub fn presence(&self) -> &Presence {
+        &self.presence
+    }
+
+    /// The wall at a time, 0 to 1; `None` while it is not there.
+    pub fn at(&self, time: f64) -> Option<Polygon> {
+        let there = self.presence.holds(time);
+        there.then(|| match &self.motion {
+            Some(motion) => self.drawn.moved(motion.moved(time)),
+            None => self.drawn.clone(),
+        })
+    }
+
+    /// How far its fastest point would go in the whole run at its greatest speed, metres; a little more if it moves and turns at once.
+    pub(super) fn length_at_full_speed(&self) -> f64 {
+        let Some(motion) = &self.motion else { return 0.0 };
+        let arm = self.longest_arm(motion);
+        let times = motion.path.times().unwrap_or_default();
+        let stretches = times.windows(2).zip(motion.turns_deg.windows(2));
+        let fastest_turn = stretches.map(|(time, turn)| (turn[1] - turn[0]).to_radians().abs() / (time[1] - time[0]));
+        motion.path.length_at_full_speed() + arm * fastest_turn.fold(0.0, f64::max)
+    }
+
+    /// From the point about which it turns to the vertex farthest from it, metres.
+    fn longest_arm(&self, motion: &Motion) -> f64 {
+        let drawn = motion.path.points().first().copied().unwrap_or(Point::ZERO);
+        self.drawn.vertices().iter().map(|&vertex| length_squared(vertex - drawn)).fold(0.0, f64::max).sqrt()
+    }
+
+    /// A box that it never leaves.
+    pub(super) fn reach(&self) -> Bounds {
+        let Some(motion) = &self.motion else { return self.drawn.bounds() };
+        let arm = self.longest_arm(motion);
+        let arm = Vector::new(arm, arm);
+        let corners = motion.path.points().iter().flat_map(|&point| [point - arm, point + arm]);
+        Bounds::around(corners).unwrap_or(self.drawn.bounds())
+    }
+
+    #[must_use]
+    pub(super) fn scaled(&self, factor: f64) -> MovingWall {
+        let scaled = |motion: &Motion| Motion { path: motion.path.scaled(factor), turns_deg: motion.turns_deg.clone() };
+        MovingWall {
+            place: self.place,
+            drawn: self.drawn.scaled(factor),
+            motion: self.motion.as_ref().map(scaled),
+            presence: self.presence.clone(),
+        }
+    }
+}

@@ -174,7 +174,8 @@ fn the_place_that_a_receiver_has_just_left_does_not_block() {
         ether.begin(0, &positions);
         ether.send(1, &Letter::of(&message(1), 0));
         ether.begin(1, &positions);
-        let heard = ether.deliver(&mut receiver, Vector::new(moved, 0.0), FRAME_US, &obstruction);
+        let mut heard = heapless::Vec::new();
+        ether.deliver(&mut receiver, Vector::new(moved, 0.0), FRAME_US, &obstruction, &mut heard);
         assert_eq!(heard.len(), 1, "moved by {moved} m");
     }
 }

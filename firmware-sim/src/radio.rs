@@ -259,7 +259,7 @@ impl Ether {
         }
         let from = obstruction.positions[usize::from(sender)];
         (!self.radio.walls_block || !obstruction.wall_between(from, position))
-            && (!self.radio.bodies_block || !obstruction.body_between(from, position))
+            && (!self.radio.bodies_block || !obstruction.body_between([sender, own], from, position))
     }
 
     /// The message as it arrives.
@@ -289,16 +289,19 @@ impl Obstruction<'_> {
         self.walls.ray(from, direction, way.length()).is_some()
     }
 
-    fn body_between(&self, from: Point<f64>, to: Point<f64>) -> bool {
+    /// Whether a robot other than the two at the ends stands in the way. These are told by their numbers: a receiver may have moved on
+    /// since the frame began, and its own old place stands in nobody's way.
+    fn body_between(&self, ends: [u16; 2], from: Point<f64>, to: Point<f64>) -> bool {
         let way = to - from;
         let squared = length_squared(way);
-        self.positions.iter().any(|&body| {
+        self.positions.iter().enumerate().any(|(robot, &body)| {
             let offset = body - from;
             let along = offset.dot(way);
-            // Beside the way, not at its ends, where sender and receiver are.
-            let beside = along > 0.0 && along < squared && length_squared(offset) > 0.0 && body != to;
+            let beside = along > 0.0 && along < squared;
             let aside = offset.cross(way);
-            beside && aside * aside < BODY_RADIUS * BODY_RADIUS * squared
+            beside
+                && aside * aside < BODY_RADIUS * BODY_RADIUS * squared
+                && ends.iter().all(|&end| usize::from(end) != robot)
         })
     }
 }

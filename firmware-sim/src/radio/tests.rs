@@ -165,6 +165,22 @@ fn walls_and_bodies_block_where_they_do() {
 }
 
 #[test]
+fn the_place_that_a_receiver_has_just_left_does_not_block() {
+    let positions = line(&[0.0, 0.5]);
+    for moved in [-0.01, -0.001, 0.0, 0.001, 0.01] {
+        let mut ether = Ether::new(&radio(|radio| radio.bodies_block = true), 1, 2);
+        let mut receiver = ether.receiver(0);
+        let obstruction = Obstruction { walls: &open(), positions: &positions };
+        ether.begin(0, &positions);
+        ether.send(1, &Letter::of(&message(1), 0));
+        ether.begin(1, &positions);
+        let mut heard = heapless::Vec::new();
+        ether.deliver(&mut receiver, Vector::new(moved, 0.0), FRAME_US, &obstruction, &mut heard);
+        assert_eq!(heard.len(), 1, "moved by {moved} m");
+    }
+}
+
+#[test]
 fn a_crowd_with_heavy_losses_is_searched_to_the_end() {
     // Half the messages get lost in a crowd of 40, and the inbox still fills, with the nearest of the others.
     let positions: Vec<Point<f64>> = (0..40).map(|i| Vector::new(f64::from(i) * 0.01, 0.0)).collect();

@@ -9,6 +9,9 @@
 //! 3. Otherwise push and wanted velocity could cancel out, and the robot would stand there for good. So it picks a side, drops
 //!    the part of the wanted velocity that leads to the other side, and adds the push turned a quarter turn to its side, too.
 //!    The robot slides past the obstacle.
+//! 4. Whatever came of this, the robot approaches the nearest thing that pushes no faster than twice the free distance a second,
+//!    less a margin, and backs away from what is within the margin. Pushes alone do not stop a robot that believes its place
+//!    on the pattern to be where another one is, as happens when positions are off.
 
 use super::drive::unit;
 use super::epuck2::{PROXIMITY_SENSORS, TICKS_PER_SECOND};
@@ -33,6 +36,9 @@ const SENSOR_DIRECTIONS: [(i16, i16); PROXIMITY_SENSORS] = [
 const PUSH_RANGE: i32 = 300;
 /// The same for a robot that hears nobody: all that sensors reach. Then nothing else spreads robots along the pattern.
 const LONELY_PUSH_RANGE: i32 = 500;
+
+/// Free distance, in 0.1 mm, that the robot keeps from what is nearest.
+const MARGIN: i32 = 100;
 
 /// A robot keeps to one side of an obstacle until nothing has been in its way for this many ticks, 1 s. If it chose anew in
 /// every tick, it would go to and fro between two obstacles that stand side by side. It changes sides before that only if
@@ -83,13 +89,19 @@ impl<S: Scalar> Avoidance<S> {
         ticks: u32,
     ) -> Vector<S> {
         let lonely = knowledge.neighbours().known().is_empty();
-        let push = self.push(proximity, heading, if lonely { LONELY_PUSH_RANGE } else { PUSH_RANGE });
-        let against = push.dot(wanted);
-        if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
+        let range = if lonely { LONELY_PUSH_RANGE } else { PUSH_RANGE };
+        let Some((push, nearest)) = self.push(proximity, heading, range) else {
             self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
-            return wanted + push;
-        }
-        self.around(wanted, push, against)
+            return wanted;
+        };
+        let against = push.dot(wanted);
+        let velocity = if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
+            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
+            wanted + push
+        } else {
+            self.around(wanted, push, against)
+        };
+        nearest.held_off(velocity)
     }
 
     /// The same for a wanted velocity that leads straight on, whatever the map knows: the way home.
@@ -131,10 +143,15 @@ impl<S: Scalar> Avoidance<S> {
         wanted - held_back + push + aside
     }
 
-    /// A velocity away from what the proximity sensors feel.
+    /// A velocity away from what the proximity sensors feel, and what of it is the nearest; `None` if nothing is within `range`.
     ///
     /// A sensor with free distance r in front of it, r below R = `range`, 0.1 mm, pushes with (1 - r/R)².
-    fn push(&self, proximity: &[u16; PROXIMITY_SENSORS], heading: Vector<S>, range: i32) -> Vector<S> {
+    fn push(
+        &self,
+        proximity: &[u16; PROXIMITY_SENSORS],
+        heading: Vector<S>,
+        range: i32,
+    ) -> Option<(Vector<S>, Felt<S>)> {
         let felt = proximity.iter().zip(SENSOR_DIRECTIONS).filter(|(distance, _)| i32::from(**distance) < range);
         // Not divided by the range in a variable: integers of 64 bits would be divided.
         let per_range = if range == PUSH_RANGE {
@@ -142,12 +159,41 @@ impl<S: Scalar> Avoidance<S> {
         } else {
             S::from_ratio(10_000, LONELY_PUSH_RANGE)
         };
-        felt.fold(Vector::ZERO, |sum, (&distance, (cos, sin))| {
-            let closeness = S::from_millionths((range - i32::from(distance)) * 100) * per_range;
+        let (mut push, mut nearest) = (Vector::ZERO, None);
+        for (&distance, (cos, sin)) in felt {
+            let distance = i32::from(distance);
+            let closeness = tenth_millimetres::<S>(range - distance) * per_range;
             let direction = heading * unit::<S>(cos) + heading.turned_left() * unit::<S>(sin);
-            sum - direction * (self.strength * closeness * closeness)
-        })
+            push = push - direction * (self.strength * closeness * closeness);
+            nearest = match nearest {
+                Some(Felt { distance: nearer, .. }) if nearer <= distance => nearest,
+                _ => Some(Felt { direction, distance }),
+            };
+        }
+        nearest.map(|nearest| (push, nearest))
     }
+}
+
+/// What a proximity sensor feels.
+struct Felt<S> {
+    /// Where, of length 1.
+    direction: Vector<S>,
+    /// Free distance, 0.1 mm.
+    distance: i32,
+}
+
+impl<S: Scalar> Felt<S> {
+    /// The velocity without what of it approaches this too fast: 2/s · (r - margin) at the free distance r.
+    fn held_off(&self, velocity: Vector<S>) -> Vector<S> {
+        let approach = velocity.dot(self.direction);
+        let most = tenth_millimetres(2 * (self.distance - MARGIN));
+        if approach > most { velocity - self.direction * (approach - most) } else { velocity }
+    }
+}
+
+/// A length in 0.1 mm, or a speed in 0.1 mm/s, in metres.
+fn tenth_millimetres<S: Scalar>(number: i32) -> S {
+    S::from_millionths(number * 100)
 }
 
 #[cfg(test)]
@@ -169,12 +215,10 @@ mod tests {
     #[test]
     fn the_push_points_away() {
         let avoidance = Avoidance::new(0.1);
-        assert_eq!(avoidance.push(&FREE, NORTH, PUSH_RANGE), Vector::ZERO);
-        let push = avoidance.push(
-            &[u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX],
-            NORTH,
-            PUSH_RANGE,
-        );
+        assert!(avoidance.push(&FREE, NORTH, PUSH_RANGE).is_none());
+        let right = [u16::MAX, u16::MAX, 0, u16::MAX, u16::MAX, u16::MAX, u16::MAX, u16::MAX];
+        let (push, nearest) = avoidance.push(&right, NORTH, PUSH_RANGE).unwrap();
+        assert!(nearest.distance == 0 && (nearest.direction.x - 1.0).abs() < 1e-4, "{:?}", nearest.direction);
         assert!((push.x + 0.1).abs() < 1e-4 && push.y.abs() < 1e-6, "right sensor of a northbound robot: {push:?}");
     }
 
@@ -202,6 +246,18 @@ mod tests {
         assert!(velocity(&mut avoidance.clone(), Vector::new(-0.01, 0.1), [100, 100]).x > 0.05);
         velocity(&mut avoidance, NORTH * 0.1, [u16::MAX; 2]);
         assert!(velocity(&mut avoidance, Vector::new(-0.01, 0.1), [100, 100]).x < -0.05);
+    }
+
+    #[test]
+    fn what_is_felt_is_approached_slowly_and_not_touched() {
+        for (distance, approach) in [(299, 0.0398), (200, 0.02), (100, 0.0), (0, -0.02)] {
+            let thing = Felt { direction: NORTH, distance };
+            let held = thing.held_off(Vector::new(0.03, 0.12));
+            assert!((held.y - approach).abs() < 1e-6 && held.x == 0.03, "{distance}: {held:?}");
+            // Who drives away faster than that already may do so.
+            let away = Vector::new(0.01, -0.05);
+            assert_eq!(thing.held_off(away), away);
+        }
     }
 
     #[test]

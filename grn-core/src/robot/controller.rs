@@ -162,7 +162,7 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             self.localisation.drive(0, 0);
             return Ok(Command::default());
         };
-        self.knowledge.update(percept, here, self.robot, now, self.swarm_velocity);
+        self.knowledge.update(percept, here, self.robot, [now, pace.ticks], self.swarm_velocity);
         let wanted = match home {
             None => self.wanted_velocity(here, percept, &pace),
             Some(home) => self.motion.velocity_to(metres(home) - here, &pace),

@@ -14,6 +14,13 @@ use heapless::Vec;
 
 /// A target nobody has seen for 5 s is forgotten; one sighting more than 255 ticks old cannot be reported.
 const FORGET_TARGET_TICKS: u8 = 5 * TICKS_PER_SECOND as u8;
+/// A target this far from where it was expected, in x or y, 25 cm, has jumped: no error that a swarm can work with is larger.
+const FAR_UM: i32 = 250_000;
+/// A sighting counts for no longer than so many ticks, half of it then. More would not come to rest.
+const MOST_TICKS_AT_ONCE: u32 = 4;
+/// A report that is so many ticks more recent, half a second, counts wholly; every one that is more recent counts for a quarter.
+const WHOLE: i32 = TICKS_PER_SECOND as i32 / 2;
+const LEAST_PART: i32 = WHOLE / 4;
 /// Obstacle ages are counted in units of 8 ticks; that often neighbours are forgotten, too.
 const OBSTACLE_AGE_UNIT: u32 = 8;
 
@@ -89,16 +96,18 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    /// Takes in the percept of robot number `own` in tick `now`; it is at `here`, and its own target moves at `velocity`.
+    /// Takes in the percept of robot number `own` in tick `now`, `ticks` after the last one; it is at `here`, and its own target
+    /// moves at `velocity`.
     ///
     /// Of the messages heard in a tick, only one has its obstacle points learned. That bounds the time of a tick, and costs
     /// little: walls stand still, so the other points can be learned when they are told again.
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
-    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16, now: u32, velocity: Vector<S>) {
+    pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16, [now, ticks]: [u32; 2], velocity: Vector<S>) {
         let here = millimetres(here);
+        let part = S::from_ratio(ticks.min(MOST_TICKS_AT_ONCE) as i32, 8);
         for sighting in &percept.targets {
-            self.see_target(*sighting);
+            self.see_target(*sighting, part);
         }
         for &position in &percept.obstacles {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
@@ -129,14 +138,20 @@ impl<S: Scalar> Knowledge<S> {
         self.obstacles.find_near();
     }
 
-    /// An alpha-beta filter: sightings correct the position by 2/5 and the velocity by 1/32 of the surprise per tick.
-    fn see_target(&mut self, sighting: Sighting) {
+    /// An alpha-beta filter: a sighting corrects a `part` of the surprise, an eighth for each tick of 1/32 s since the last one, and
+    /// the velocity by twice that a second. After a right-angled turn the target is expected off by up
+    /// to its way in a quarter of a second, and where it is again after one and a half. One that has jumped is followed at once.
+    fn see_target(&mut self, sighting: Sighting, part: S) {
         let seen = metres(sighting.position);
         match self.targets.iter_mut().find(|known| known.target == sighting.target) {
             Some(known) => {
                 let surprise = seen - known.position;
-                known.position = known.position + surprise * S::from_ratio(2, 5);
-                known.velocity = known.velocity + surprise * S::from_ratio(i32::from(TICKS_PER_SECOND), 32);
+                if is_far(surprise) {
+                    known.position = seen;
+                } else {
+                    known.position = known.position + surprise * part;
+                    known.velocity = known.velocity + surprise * (part + part);
+                }
                 known.age = 0;
             }
             None => {
@@ -147,7 +162,12 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
-    /// A report replaces what the robot knows of that target if it is more recent.
+    /// A report that is more recent than what the robot knows of that target corrects it: by a quarter of the difference, or
+    /// the larger part that the time between both is of half a second.
+    ///
+    /// Each mother tells where targets are from where she believes to be. Those who hear several of them so come to know the
+    /// mean, which is less off than any of them, and all the same one; if the last report replaced the others, robots would
+    /// follow now this mother's error, now that one's.
     ///
     /// It is older by the time it was on its way, and by one tick at least: else robots would tell each other for ever
     /// what nobody sees any more.
@@ -165,6 +185,12 @@ impl<S: Scalar> Knowledge<S> {
         }
         let told = KnownTarget { target: report.target, position, velocity, age };
         match known {
+            Some(known) if !is_far(told.position - known.position) => {
+                let part = S::from_ratio(i32::from(known.age - age).clamp(LEAST_PART, WHOLE), WHOLE);
+                known.position = known.position + (told.position - known.position) * part;
+                known.velocity = known.velocity + (told.velocity - known.velocity) * part;
+                known.age = age;
+            }
             Some(known) => *known = told,
             None => {
                 let _ = self.targets.push(told);
@@ -206,6 +232,12 @@ fn whose_turn(now: u32, messages: usize) -> usize {
     ((u64::from(share) * messages as u64) >> u32::BITS) as usize
 }
 
+/// Whether a target was not only seen badly but is elsewhere: [`FAR_UM`] or more in x or y.
+fn is_far<S: Scalar>(Vector { x, y }: Vector<S>) -> bool {
+    let limit = S::from_millionths(FAR_UM);
+    x.abs() >= limit || y.abs() >= limit
+}
+
 /// Milliseconds as seconds.
 fn seconds<S: Scalar>(milliseconds: u16) -> S {
     S::from_millionths(i32::from(milliseconds) * 1000)
@@ -214,4 +246,75 @@ fn seconds<S: Scalar>(milliseconds: u16) -> S {
 fn nth_in_turn<T>(items: &[T], turn: u32) -> Option<&T> {
     let index = turn.checked_rem(items.len() as u32)?;
     items.get(index as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::clock::Clock;
+    use super::super::percept::NOMINAL_TICK_US;
+    use super::*;
+    use crate::robot::{Message, Millimetres};
+
+    /// Ticks of 1/32 s, each with its number, what is seen of target 0 and which reports of it are heard: positions, metres.
+    struct Robot {
+        knowledge: Knowledge<f32>,
+        clock: Clock,
+    }
+
+    impl Robot {
+        fn new() -> Self {
+            Robot { knowledge: Knowledge::new(), clock: Clock::default() }
+        }
+
+        /// Where it expects the target after a tick in which it sees it, or hears others who do, at these places, mm.
+        fn tick(&mut self, seen: Option<[i16; 2]>, heard: &[(u16, i16)]) -> Point<f32> {
+            let pace = self.clock.advance::<f32>(NOMINAL_TICK_US);
+            self.knowledge.grow_older(&pace, self.clock.tick(), Vector::ZERO, Vector::ZERO);
+            let mut percept = Percept::nothing();
+            let sighting = |[x, y]: [i16; 2]| Sighting { target: 0, position: Millimetres { x, y } };
+            percept.targets.extend(seen.map(sighting));
+            percept.heard.extend(heard.iter().map(|&(sender, x)| {
+                let position = Millimetres { x, y: 0 };
+                let target = Some(TargetReport { target: 0, position, velocity: [0; 2], age: 0 });
+                Heard { message: Message { sender, position, target, obstacles: Vec::new() }, age_ms: 0 }
+            }));
+            let now = [self.clock.tick(), pace.ticks];
+            self.knowledge.update(&percept, Vector::ZERO, 9, now, Vector::ZERO);
+            self.knowledge.targets()[0].position
+        }
+    }
+
+    #[test]
+    fn of_two_mothers_who_disagree_the_mean_is_believed() {
+        // The second speaks 1, 4 or 7 ticks after the first.
+        for later in [1, 4, 7] {
+            let mut robot = Robot::new();
+            let mut expected = std::vec::Vec::new();
+            for tick in 0..320 {
+                expected.push(match tick % 8 {
+                    0 => robot.tick(None, &[(1, 50)]).x,
+                    turn if turn == later => robot.tick(None, &[(2, -50)]).x,
+                    _ => robot.tick(None, &[]).x,
+                });
+            }
+            assert!(expected[160..].iter().all(|x| x.abs() < 0.03), "{later}: {:?}", &expected[312..]);
+        }
+    }
+
+    #[test]
+    fn a_target_that_turns_or_jumps_is_followed() {
+        let mut robot = Robot::new();
+        // 96 mm/s to the east for 5 s, then to the north.
+        let place = |tick: i16| if tick < 160 { [3 * tick, 0] } else { [480, 3 * (tick - 160)] };
+        let error = |expected: Point<f32>, [x, y]: [i16; 2]| {
+            (expected - Vector::new(f32::from(x) * 1e-3, f32::from(y) * 1e-3)).length()
+        };
+        for tick in 0..320 {
+            let off = error(robot.tick(Some(place(tick)), &[]), place(tick));
+            let most = if (96..160).contains(&tick) || tick >= 208 { 0.003 } else { 0.024 };
+            assert!(off < most, "{tick}: {off}");
+        }
+        let jumped = [-500, 700];
+        assert!(error(robot.tick(Some(jumped), &[]), jumped) < 1e-6);
+    }
 }

@@ -104,7 +104,7 @@ const COST_BARS: [(&str, usize); 5] = [
     ("-xnor tick", 10_000),
     ("-xnor tick-largest", 10_000),
     ("-xnor tick-all-heard-at-once", 10_600),
-    ("-xnor tick-all-new-at-once", 10_000),
+    ("-xnor tick-all-new-at-once", 10_600),
 ];
 
 impl Image {

@@ -113,10 +113,10 @@ fn a_robot_comes_to_rest_on_the_ring_at_every_pace_and_with_old_fixes() {
 #[test]
 fn what_is_heard_over_relays_is_as_old_and_as_far_as_it_should_be() {
     const RADIO_TICKS: usize = 5;
-    const SEEN: usize = 100;
+    const SEEN: usize = 320;
     let mut robots: Vec<Controller<f32>> = (0..5).map(controller).collect();
     let mut said: Vec<Vec<Option<Message>>> = std::vec![Vec::new(); robots.len()];
-    // The target moves east at 40 mm/s and is seen by the first robot only, until tick 100.
+    // The target moves east at 40 mm/s and is seen by the first robot only, for 10 s.
     let target_at = |tick: usize| 0.04 / 32.0 * tick as f64;
     let mut told = 0;
     for tick in 0..SEEN + 120 {

@@ -112,13 +112,18 @@ impl<S: Scalar> Avoidance<S> {
         heading: Vector<S>,
         ticks: u32,
     ) -> Vector<S> {
-        let push = self.push(proximity, heading, LONELY_PUSH_RANGE);
-        let against = push.dot(wanted);
-        if against >= S::ZERO {
+        let Some((push, nearest)) = self.push(proximity, heading, LONELY_PUSH_RANGE) else {
             self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
-            return wanted + push;
-        }
-        self.around(wanted, push, against)
+            return wanted;
+        };
+        let against = push.dot(wanted);
+        let velocity = if against >= S::ZERO {
+            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
+            wanted + push
+        } else {
+            self.around(wanted, push, against)
+        };
+        nearest.held_off(velocity)
     }
 
     /// The velocity around what pushes; `against` = push · wanted, negative.

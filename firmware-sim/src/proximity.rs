@@ -220,22 +220,26 @@ impl ProximityRing {
         }
         for (sensor, (reading, &gain)) in readings.iter_mut().zip(&gains.0).enumerate() {
             let nearest = nearest[sensor];
-            if nearest <= PROXIMITY_RANGE
-                && let Some(felt) = self.felt(free.map(|fan| fan[sensor].max(0.0)))
-            {
-                let sensed = self.sensed(felt, nearest.max(0.0), gain, noise);
+            if nearest > PROXIMITY_RANGE {
+                continue;
+            }
+            let nearest = nearest.max(0.0);
+            let felt = if self.fans.len() == 1 {
+                Some(self.response.signal(nearest))
+            } else {
+                self.felt(free.map(|fan| fan[sensor].max(0.0)))
+            };
+            if let Some(felt) = felt {
+                let sensed = self.sensed(felt, nearest, gain, noise);
                 *reading = if sensed > PROXIMITY_RANGE { u16::MAX } else { (sensed * 1e4 + 0.5) as u16 };
             }
         }
         readings
     }
 
-    /// Signal and its standard deviation for what a sensor's rays meet; `None` if it is too weak to be one.
+    /// Signal and its standard deviation for what a sensor's three rays meet; `None` if it is too weak to be one.
     fn felt(&self, rays: [f64; RAYS]) -> Option<(f64, f64)> {
         let [middle, right, left] = rays;
-        if self.fans.len() == 1 {
-            return Some(self.response.signal(middle));
-        }
         if self.response == Response::Distance {
             return Some(self.response.signal(middle.min(right).min(left)));
         }

@@ -150,7 +150,7 @@ mod tests {
     fn faults_and_robots_out_of_service_are_marked() {
         let crosses = |figure: &TraceFigure| {
             let document = read(&trace(figure).unwrap());
-            let lines = document.tags.iter().filter(|tag| tag.starts_with("line") && tag.contains(VERMILLION));
+            let lines = document.tags.iter().filter(|tag| tag.starts_with("path") && tag.contains(VERMILLION));
             (lines.count() / 2, document.says("fault of a robot"), document.says("robot out of service"))
         };
         let mut figure = figure();

@@ -3,7 +3,7 @@
 use crate::geometry::length_squared;
 use crate::localisation::PoseError;
 use crate::random::Stream;
-use crate::units::rounded;
+use crate::units::millimetres;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::percept::{MAX_SEEN_OBSTACLES, MAX_TARGETS};
 use grn_core::robot::{Millimetres, Sighting};
@@ -33,13 +33,9 @@ pub struct Eye {
 
 impl Eye {
     fn seen(&self, thing: Point<f64>, stream: &mut Stream) -> Millimetres {
-        let Vector { x, y } = self.error.seen(self.position, thing);
-        let mut perceived = |metres: f64| {
-            let error = if self.noise_m > 0.0 { self.noise_m * stream.normal() } else { 0.0 };
-            // Messages hold ±32.767 m.
-            rounded((metres + error).clamp(-32.767, 32.767) * 1e3) as i16
-        };
-        Millimetres { x: perceived(x), y: perceived(y) }
+        let seen = self.error.seen(self.position, thing);
+        let mut error = || if self.noise_m > 0.0 { self.noise_m * stream.normal() } else { 0.0 };
+        millimetres(seen + Vector::new(error(), error()))
     }
 }
 

@@ -2,9 +2,10 @@
 //!
 //! How a frame, 1/32 s, goes:
 //!
-//! 1. Each robot perceives the world as the last frame left it whenever its clock says so, its brain answers, and it drives on.
+//! 1. Once a second a base station, if there is one, says which robots are to be out.
+//! 2. Each robot perceives the world as the last frame left it whenever its clock says so, its brain answers, and it drives on.
 //!    This depends on no other robot's part of the frame, so it may happen in any order, and on several threads at once.
-//! 2. Overlaps are resolved, the targets move on, and the new state is recorded.
+//! 3. Overlaps are resolved, targets and walls move on, and the new state is recorded.
 //!
 //! What a brain broadcasts in a frame is heard in the next one at the earliest.
 
@@ -205,11 +206,6 @@ impl<B: Brain> Swarm<B> {
     /// Targets and walls as they are now, in real metres.
     pub fn scene(&self) -> &Scene {
         &self.scene
-    }
-
-    /// When in the run the world is at which time.
-    pub fn course(&self) -> &Course {
-        &self.course
     }
 
     /// Frames simulated so far.

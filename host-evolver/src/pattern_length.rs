@@ -12,8 +12,10 @@ use grn_core::robot::epuck2::TICKS_PER_SECOND;
 
 /// Moments at which the pattern is traced; between two of them its length is taken as that of the first.
 const MOMENTS: u64 = 48;
-/// The most nodes of the lattice times moments, 8 bytes each; a larger world is traced at fewer moments.
+/// The most nodes of the lattice times moments, 8 bytes each; a larger world is traced at fewer moments. One whose walls move takes
+/// 43 bytes each, so it may have a fifth.
 const MOST_NODES: f64 = 2e7;
+const MOST_NODES_OF_MOVING_WALLS: f64 = MOST_NODES / 5.0;
 
 /// The circumference of a blob's pattern while the targets of a run move.
 ///
@@ -23,7 +25,8 @@ pub fn circumference(blob: &Blob, scenario: &Scenario, config: &SwarmConfig) -> 
     let model = Model::new(&blob.network, f64::from(blob.level_fraction))?;
     let course = Course::of(&scenario.scaled(config.scale), config);
     let [width, height] = scenario.region();
-    let most = MOST_NODES * LATTICE_STEP * LATTICE_STEP / (width * height);
+    let most = if scenario.walls_change() { MOST_NODES_OF_MOVING_WALLS } else { MOST_NODES };
+    let most = most * LATTICE_STEP * LATTICE_STEP / (width * height);
     let moments = MOMENTS.min(most as u64).max(1);
     let every = arrival_tick(&course).div_ceil(moments).max(1);
     let moment = |place| {

@@ -286,11 +286,17 @@ const MOST_HOURS: f64 = 1000.0;
 /// Whether a run ends in reasonable time: a slow target makes a long run.
 ///
 /// # Errors
-/// [`InputError`] that says which speed is possible.
+/// [`InputError`] that says which speed or duration is possible.
 pub fn check_length(scenario: &Scenario, config: &SwarmConfig) -> Result<(), InputError> {
     let most_seconds = MOST_HOURS * 3600.0;
     if scenario.travel_s(config.target_speed_m_per_s / config.scale) + config.settle_s <= most_seconds {
         return Ok(());
+    }
+    if let Some(duration_s) = scenario.duration_s() {
+        let most = most_seconds - config.settle_s;
+        let way_out =
+            format!("the run would take longer than {MOST_HOURS:.0} simulated hours; at most {most} s are possible");
+        return Err(InputError::new("duration_s", format!("{duration_s:?}"), way_out));
     }
     let path = scenario.longest_path() * config.scale;
     // Rounded up, so that the speed that is named is possible.

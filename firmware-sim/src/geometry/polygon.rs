@@ -2,7 +2,7 @@
 
 use super::{Bounds, Edge, crossings_odd, length_squared};
 use core::fmt;
-use grn_core::geometry::Point;
+use grn_core::geometry::{Point, Vector};
 
 /// Why points do not make a polygon; vertices and edges count from 0, edge i runs from vertex i to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,6 +129,12 @@ impl Polygon {
             }
         }
         best
+    }
+
+    /// Distance along the ray from `origin` in the unit `direction` to the outline, if within `reach`.
+    pub fn ray(&self, origin: Point<f64>, direction: Vector<f64>, reach: f64) -> Option<f64> {
+        let hits = self.edges.iter().filter_map(|edge| edge.ray(origin, direction));
+        hits.reduce(f64::min).filter(|&distance| distance <= reach)
     }
 
     /// Distance from the polygon, 0 inside.

@@ -1,7 +1,7 @@
 //! Solid obstacles.
 
 use super::nearest::NearestEdges;
-use super::{Bounds, Edge, Polygon};
+use super::{Bounds, Polygon};
 use grn_core::field::Obstacles;
 use grn_core::geometry::{Point, Vector};
 use std::sync::Arc;
@@ -112,8 +112,7 @@ impl Walls {
     /// Distance along the ray from `origin` in the unit `direction` to the first outline, if within `reach`.
     pub fn ray(&self, origin: Point<f64>, direction: Vector<f64>, reach: f64) -> Option<f64> {
         let near = self.polygons().filter(|p| p.bounds().distance_squared(origin) <= reach * reach);
-        let hits = near.flat_map(Polygon::edges).filter_map(|edge: &Edge| edge.ray(origin, direction));
-        hits.reduce(f64::min).filter(|&distance| distance <= reach)
+        near.filter_map(|polygon| polygon.ray(origin, direction, reach)).reduce(f64::min)
     }
 
     /// Points on every outline, wall by wall, every `spacing` metres of arc length from each wall's first vertex.

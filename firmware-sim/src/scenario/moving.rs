@@ -1,5 +1,6 @@
 //! Walls that move, turn, come and go.
 
+use super::path::{Stretch, stretch};
 use super::{Path, Presence};
 use crate::geometry::{Bounds, Polygon, length_squared};
 use grn_core::geometry::{Point, Vector};
@@ -29,15 +30,11 @@ impl Motion {
     }
 
     fn turn_deg_at(&self, time: f64) -> f64 {
-        let times = self.path.times().unwrap_or_default();
-        let next = times.partition_point(|&t| t <= time);
-        match (next.checked_sub(1), self.turns_deg.get(next)) {
-            (None, _) => self.turns_deg.first().copied().unwrap_or(0.0),
-            (Some(_), None) => self.turns_deg.last().copied().unwrap_or(0.0),
-            (Some(before), Some(&to)) => {
-                let from = self.turns_deg[before];
-                from + (to - from) * ((time - times[before]) / (times[next] - times[before]))
-            }
+        let turns = &self.turns_deg;
+        match stretch(self.path.times().unwrap_or_default(), time) {
+            Stretch::Before => turns[0],
+            Stretch::Between(begun, share) => turns[begun] + (turns[begun + 1] - turns[begun]) * share,
+            Stretch::After => turns[turns.len() - 1],
         }
     }
 

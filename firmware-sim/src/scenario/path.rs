@@ -68,13 +68,13 @@ impl Path {
             Some(times) => (times, time),
             None => (&self.passed, if time > 0.0 { time * self.length() } else { 0.0 }),
         };
-        let next = stations.partition_point(|&station| station <= now);
-        let (Some(&to), Some(from_index)) = (self.points.get(next), next.checked_sub(1)) else {
-            return if next == 0 { first } else { last };
-        };
-        let from = self.points[from_index];
-        let share = (now - stations[from_index]) / (stations[next] - stations[from_index]);
-        from + (to - from) * share
+        match stretch(stations, now) {
+            Stretch::Before => first,
+            Stretch::Between(begun, share) => {
+                self.points[begun] + (self.points[begun + 1] - self.points[begun]) * share
+            }
+            Stretch::After => last,
+        }
     }
 
     /// The path with every coordinate multiplied by `factor`.
@@ -82,5 +82,25 @@ impl Path {
     pub(super) fn scaled(&self, factor: f64) -> Path {
         let scaled = Path::new(self.points.iter().map(|&point| point * factor).collect());
         Path { times: self.times.clone(), ..scaled }
+    }
+}
+
+/// Between which of some stations something is.
+pub(super) enum Stretch {
+    /// It has not come to the first.
+    Before,
+    /// It has passed this one, and a share of the stretch to the next.
+    Between(usize, f64),
+    /// It has passed the last.
+    After,
+}
+
+/// Where `now` is among rising `stations`.
+pub(super) fn stretch(stations: &[f64], now: f64) -> Stretch {
+    let next = stations.partition_point(|&station| station <= now);
+    match (next.checked_sub(1), stations.get(next)) {
+        (None, _) => Stretch::Before,
+        (Some(begun), Some(end)) => Stretch::Between(begun, (now - stations[begun]) / (end - stations[begun])),
+        (Some(_), None) => Stretch::After,
     }
 }

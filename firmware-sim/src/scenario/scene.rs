@@ -34,11 +34,6 @@ impl Scene {
         }
     }
 
-    /// The time, 0 to 1.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
     /// Where each target is, metres; `None` while it is not there.
     pub fn targets(&self) -> &[Option<Point<f64>>] {
         &self.targets

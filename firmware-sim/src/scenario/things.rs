@@ -155,11 +155,7 @@ fn check_free(key: &str, points: &[Point<f64>], walls: &Walls) -> Result<(), Inp
 /// The wall that the straight way between two points meets first.
 fn wall_between(walls: &Walls, start: Point<f64>, end: Point<f64>) -> Option<usize> {
     let (direction, reach) = ((end - start).direction()?, (end - start).length());
-    walls.ray(start, direction, reach)?;
-    let first = |polygon: &Polygon| {
-        let hits = polygon.edges().iter().filter_map(|edge| edge.ray(start, direction));
-        hits.filter(|&distance| distance <= reach).reduce(f64::min)
-    };
-    let hits = walls.fixed().iter().enumerate().filter_map(|(wall, polygon)| Some((wall, first(polygon)?)));
+    let met = |(wall, polygon): (usize, &Polygon)| Some((wall, polygon.ray(start, direction, reach)?));
+    let hits = walls.fixed().iter().enumerate().filter_map(met);
     hits.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(wall, _)| wall)
 }

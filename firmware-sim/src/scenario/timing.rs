@@ -128,7 +128,6 @@ pub(super) fn check_course(world: &Scenario) -> Result<(), InputError> {
 }
 
 fn crosses(polygon: &Polygon, from: Point<f64>, to: Point<f64>) -> bool {
-    let Some(direction) = (to - from).direction() else { return false };
-    let length = (to - from).length();
-    polygon.edges().iter().filter_map(|edge| edge.ray(from, direction)).any(|distance| distance <= length)
+    let way = to - from;
+    way.direction().is_some_and(|direction| polygon.ray(from, direction, way.length()).is_some())
 }

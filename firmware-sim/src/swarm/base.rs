@@ -15,7 +15,7 @@ use crate::faults::{Absences, FaultPlan};
 use crate::geometry::length_squared;
 use crate::lab::Laboratory;
 use crate::timing::FRAME_S;
-use crate::units::rounded;
+use crate::units::millimetres;
 use core::f64::consts::TAU;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::{MAX_WHEEL_SPEED, METRES_PER_STEP};
@@ -247,9 +247,4 @@ fn nearest(targets: &[Point<f64>], here: Point<f64>) -> f64 {
 
 fn metres(Millimetres { x, y }: Millimetres) -> Point<f64> {
     Vector::new(f64::from(x) * 1e-3, f64::from(y) * 1e-3)
-}
-
-fn millimetres(point: Point<f64>) -> Millimetres {
-    let coordinate = |metres: f64| rounded(metres.clamp(-32.767, 32.767) * 1e3) as i16;
-    Millimetres { x: coordinate(point.x), y: coordinate(point.y) }
 }

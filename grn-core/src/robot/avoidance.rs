@@ -77,47 +77,26 @@ impl<S: Scalar> Avoidance<S> {
         Avoidance { strength: cruise, side: Side::Left, kept: 0 }
     }
 
-    /// The velocity to drive at, metres per second, for one that is `wanted`, by a robot at `here`, `ticks` of 1/32 s after
-    /// the last time.
+    /// The velocity to drive at, metres per second, for one that is `wanted`, `ticks` of 1/32 s after the last time. On the `map`,
+    /// where the robot is and what it knows, things that it knows of are not gone around: the pattern keeps it away from them. The
+    /// way home, which leads straight on, has none.
     pub fn velocity(
         &mut self,
         wanted: Vector<S>,
         proximity: &[u16; PROXIMITY_SENSORS],
         heading: Vector<S>,
-        here: Point<S>,
-        knowledge: &Knowledge<S>,
+        map: Option<(Point<S>, &Knowledge<S>)>,
         ticks: u32,
     ) -> Vector<S> {
-        let lonely = knowledge.neighbours().known().is_empty();
+        let lonely = map.is_none_or(|(_, knowledge)| knowledge.neighbours().known().is_empty());
         let range = if lonely { LONELY_PUSH_RANGE } else { PUSH_RANGE };
         let Some((push, nearest)) = self.push(proximity, heading, range) else {
             self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
             return wanted;
         };
         let against = push.dot(wanted);
-        let velocity = if against >= S::ZERO || knowledge.knows_what_pushes(here, push) {
-            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
-            wanted + push
-        } else {
-            self.around(wanted, push, against)
-        };
-        nearest.held_off(velocity)
-    }
-
-    /// The same for a wanted velocity that leads straight on, whatever the map knows: the way home.
-    pub fn velocity_off_map(
-        &mut self,
-        wanted: Vector<S>,
-        proximity: &[u16; PROXIMITY_SENSORS],
-        heading: Vector<S>,
-        ticks: u32,
-    ) -> Vector<S> {
-        let Some((push, nearest)) = self.push(proximity, heading, LONELY_PUSH_RANGE) else {
-            self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
-            return wanted;
-        };
-        let against = push.dot(wanted);
-        let velocity = if against >= S::ZERO {
+        let is_known = || map.is_some_and(|(here, knowledge)| knowledge.knows_what_pushes(here, push));
+        let velocity = if against >= S::ZERO || is_known() {
             self.kept = u32::from(self.kept).saturating_sub(ticks) as u8;
             wanted + push
         } else {
@@ -231,7 +210,7 @@ mod tests {
     fn velocity(avoidance: &mut Avoidance<f32>, wanted: Vector<f32>, [left, right]: [u16; 2]) -> Vector<f32> {
         let mut proximity = FREE;
         (proximity[7], proximity[0]) = (left, right);
-        avoidance.velocity(wanted, &proximity, NORTH, Vector::ZERO, &Knowledge::new(), 1)
+        avoidance.velocity(wanted, &proximity, NORTH, Some((Vector::ZERO, &Knowledge::new())), 1)
     }
 
     #[test]

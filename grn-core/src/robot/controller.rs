@@ -167,11 +167,8 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
             None => self.wanted_velocity(here, percept, &pace),
             Some(home) => self.motion.velocity_to(metres(home) - here, &pace),
         };
-        let (felt, ticks) = (&percept.proximity, pace.ticks);
-        let velocity = match home {
-            None => self.avoidance.velocity(wanted, felt, heading, here, &self.knowledge, ticks),
-            Some(_) => self.avoidance.velocity_off_map(wanted, felt, heading, ticks),
-        };
+        let map = home.is_none().then_some((here, &self.knowledge));
+        let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, map, pace.ticks);
         let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
         Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })

@@ -100,7 +100,7 @@ impl<S: Scalar> Knowledge<S> {
     /// moves at `velocity`.
     ///
     /// Of the messages heard in a tick, only one has its obstacle points learned. That bounds the time of a tick, and costs
-    /// little: walls stand still, so the other points can be learned when they are told again.
+    /// little: walls stand still or are slow, so the other points can be learned when they are told again.
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
     pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16, [now, ticks]: [u32; 2], velocity: Vector<S>) {

@@ -1,8 +1,8 @@
 //! Campaigns: scenarios x methods x seeds, models tried in other worlds, and knees in simulated laboratories, with statistics.
 //!
-//! Every run, every world of trials and every knee's simulations are a unit of its own that is in the campaign's folder whole or not at all. So a
-//! campaign can be stopped anywhere, resumed, split over machines and merged, and its tables come out the same: they are
-//! made from the files of the units alone.
+//! Every run, every world of trials and the simulations of every knee are a unit of its own that is in the campaign's folder
+//! whole or not at all. So a campaign can be stopped anywhere, resumed, split over machines and merged, and its tables come out
+//! the same: they are made from the files of the units alone.
 
 mod figures;
 mod manifest;

@@ -37,5 +37,11 @@ fn a_run_of_more_than_a_thousand_hours_is_refused_before_it_starts() -> Outcome 
         let output = command.arg("simulate").arg(model()).arg(channel()).args(["--speed", speed]).output()?;
         assert_refused(&output, &["--speed", "simulated hours", "metres per second are needed"]);
     }
+    // Where the world itself says how long it takes, the speed is not to blame.
+    let folder = tempfile::tempdir()?;
+    let long = folder.path().join("long.toml");
+    std::fs::write(&long, std::fs::read_to_string(channel())?.replace("snapshots", "duration_s = 3.6e6\nsnapshots"))?;
+    let output = grn().arg("simulate").arg(model()).arg(&long).output()?;
+    assert_refused(&output, &["duration_s = 3600000.0", "at most 3599990 s are possible"]);
     Ok(())
 }

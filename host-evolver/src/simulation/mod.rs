@@ -262,3 +262,26 @@ pub fn meter<'a>(
         ruler.distance(robot, targets, scene.walls())
     })
 }
+
+/// What a run costs: J of [`Caging::cost`], and nothing else is measured. Once it is sure to be more than `hopeless` the run is broken
+/// off, and costs what is sure by then.
+///
+/// # Errors
+/// As of [`simulate`].
+pub fn cost(setting: &Setting<'_>, config: SwarmConfig, hopeless: f64) -> Result<f64, SimulationError> {
+    let Setting { blob, scenario, circumference } = setting.clone();
+    let swarm = Swarm::with_pattern(scenario, config, circumference, native::<f32>(blob)?);
+    let mut swarm = swarm.map_err(SimulationError::Config)?;
+    let (absences, end) = (swarm.faults().absences(), swarm.arrival_tick());
+    let (world, course) = (swarm.world().clone(), Course::of(swarm.world(), swarm.config()));
+    let mut meter = CagingMeter::new(&world, course, &absences, TICKS_PER_SECOND);
+    meter.observe(&swarm.frame());
+    while swarm.tick() < end {
+        swarm.step().map_err(SimulationError::Brain)?;
+        meter.observe(&swarm.frame());
+        if swarm.tick().is_multiple_of(u64::from(TICKS_PER_SECOND)) && meter.least_cost() > hopeless {
+            return Ok(meter.least_cost());
+        }
+    }
+    Ok(meter.caging().cost())
+}

@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(format!("{:.1} to {:.1} %", low * 100.0, high * 100.0), "91.5 to 99.0 %");
         assert!(robustness.is_enough());
         let worst: Vec<u64> = robustness.worst(4).iter().map(|reality| reality.number).collect();
-        assert_eq!(worst, [7, 50, 1, 2]);
+        assert_eq!(worst, [7, 50, 3, 1]);
         assert_eq!(robustness.quantile(0.5, |reality| reality.encircled_share), Some(1.0));
         assert_eq!(robustness.quantile(0.01, |reality| reality.encircled_share), Some(0.4));
     }

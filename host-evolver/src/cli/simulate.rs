@@ -10,7 +10,7 @@ use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::realities;
 use crate::record;
 use crate::simulation::verdict::{ENOUGH_CAGED, ENOUGH_IN_BAND, MOST_CONTACT, MOST_LOST};
-use crate::simulation::{self, DEFAULT_SPEED, Simulation, SimulationError, usual_config};
+use crate::simulation::{self, DEFAULT_SPEED, Simulation, SimulationError, doubts, usual_config};
 use firmware_sim::base_station::Dispatch;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::MAX_ROBOTS;
@@ -207,6 +207,10 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
     let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
+    if fits.is_ok() {
+        let of_world = |doubt: &String| output::notice(format_args!("{}: {doubt}", scenario.name()));
+        doubts(scenario, config).iter().for_each(of_world);
+    }
     fits.map_err(|error| match error.key() {
         "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value(), error.expected())),
         "scale" | "robots" => {

@@ -109,10 +109,11 @@ impl Settings {
         self.de.population * (1 + self.de.generations)
     }
 
-    /// What of the budget is kept for refining the best models on the closed loop: a fifth, or nothing if no objective is made from
-    /// trials.
+    /// What of the budget is kept for refining the best models on the closed loop: a fifth, or what the first generation leaves;
+    /// nothing if no objective is made from trials.
     pub fn refining_evaluations(&self) -> usize {
-        if self.objectives.need_trials() { self.evaluations / 5 } else { 0 }
+        let left = self.evaluations.saturating_sub(self.least_evaluations());
+        if self.objectives.need_trials() { left.min(self.evaluations / 5) } else { 0 }
     }
 
     /// What of the budget the search has.

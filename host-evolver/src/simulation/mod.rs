@@ -1,6 +1,7 @@
 //! Software in the loop: a blob on every robot of a simulated swarm, and whether it works.
 
 mod length;
+mod outlook;
 mod ruler;
 pub mod verdict;
 
@@ -28,6 +29,7 @@ use std::sync::Arc;
 use verdict::{ENOUGH_CAGED, ENOUGH_IN_BAND, MOST_CONTACT, MOST_LOST, Verdict, time_to_form_s};
 
 pub use length::check_length;
+pub use outlook::doubts;
 pub use ruler::PatternRuler;
 
 /// Speed of the fastest target when nothing else is said, metres per second in the world.

@@ -40,12 +40,12 @@ fn a_run_with_trials_is_extended_likewise() -> Outcome {
     let tried = |folder: &str, evaluations: &str, more: &[&str]| {
         let mut command = grn();
         command.arg("evolve").arg(repository("scenarios/open.toml")).arg("--out").arg(scratch.path().join(folder));
-        command.args(["--realities", "2", "--evaluations", evaluations]).args(more);
+        command.args(["--realities", "1", "--evaluations", evaluations]).args(more);
         command
     };
-    assert_answered(&tried("long", "2100", &["--threads", "2"]).output()?);
+    assert_answered(&tried("long", "1700", &["--threads", "2"]).output()?);
     assert_answered(&tried("steps", "900", &["--threads", "1"]).output()?);
-    assert_answered(&tried("steps", "2100", &["--resume"]).output()?);
+    assert_answered(&tried("steps", "1700", &["--resume"]).output()?);
     let [long, steps] = ["long", "steps"].map(|folder| scratch.path().join(folder));
     assert_eq!(different(&long, &steps)?, Vec::<PathBuf>::new());
     let front = std::fs::read_to_string(long.join("front.csv"))?;

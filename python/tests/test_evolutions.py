@@ -23,14 +23,14 @@ def evolved(tmp_path_factory):
     folder = tmp_path_factory.mktemp("evolved")
     heard = []
     found = grn.evolve(
-        ROOT / "scenarios" / "channel.toml", out=folder / "ours", evaluations=BUDGET, seed=5, progress=heard.append
+        ROOT / "scenarios" / "channel.toml", out=folder / "ours", evaluations=BUDGET, seed=5, realities=2, progress=heard.append
     )
     return folder, found, heard
 
 
 def test_an_evolution_leaves_the_files_of_the_command_line(evolved, grn_command, channel):
     folder, found, _ = evolved
-    command = [grn_command, "evolve", str(channel), "--seed", "5", "--evaluations", str(BUDGET), "--out", str(folder / "theirs")]
+    command = [grn_command, "evolve", str(channel), "--seed", "5", "--realities", "2", "--evaluations", str(BUDGET), "--out", str(folder / "theirs")]
     code = subprocess.run(command, capture_output=True).returncode
     assert code == (0 if found.works else 1)
     ours, theirs = files_of(folder / "ours"), files_of(folder / "theirs")
@@ -72,10 +72,10 @@ def test_a_trace_opens_in_pandas(evolved):
 
 def test_a_run_is_resumed_to_the_same_files(evolved, channel):
     folder, _, _ = evolved
-    grn.evolve(channel, out=folder / "shorter", evaluations=800, seed=5)
+    grn.evolve(channel, out=folder / "shorter", evaluations=800, seed=5, realities=2)
     with pytest.raises(grn.GrnError, match="a run is here already"):
-        grn.evolve(channel, out=folder / "shorter", evaluations=BUDGET, seed=5)
-    grn.evolve(channel, out=folder / "shorter", evaluations=BUDGET, seed=5, resume=True, threads=1)
+        grn.evolve(channel, out=folder / "shorter", evaluations=BUDGET, seed=5, realities=2)
+    grn.evolve(channel, out=folder / "shorter", evaluations=BUDGET, seed=5, realities=2, resume=True, threads=1)
     assert files_of(folder / "shorter") == files_of(folder / "ours")
 
 

@@ -13,7 +13,7 @@
 use super::constraints::Constraints;
 use super::contour::View;
 use super::error_table::ErrorTable;
-use super::fitness::{Evaluation, WORST_F2, evaluate_snapshot};
+use super::fitness::{Evaluation, TargetDistance, WORST_F2, evaluate_snapshot};
 use super::model::Model;
 use super::tracer::{Tracer, error_table_of};
 use super::world::{Snapshot, World};
@@ -26,6 +26,7 @@ use crate::model::tree::Tree;
 pub struct Evaluator<'w> {
     worlds: &'w [World],
     constraints: Constraints,
+    distance: TargetDistance,
     tracers: Vec<Tracer<'w>>,
     /// The world and the snapshot of each place that models are evaluated at.
     places: Vec<(usize, usize)>,
@@ -46,7 +47,28 @@ impl<'w> Evaluator<'w> {
         };
         let places: Vec<_> = worlds.iter().enumerate().flat_map(places_in).collect();
         let tracers = worlds.iter().map(Tracer::new).collect();
-        Evaluator { worlds, constraints, tracers, difficulty: vec![0.0; places.len()], places }
+        let distance = TargetDistance::OfAll;
+        Evaluator { worlds, constraints, distance, tracers, difficulty: vec![0.0; places.len()], places }
+    }
+
+    /// The same with f2 by this distance.
+    #[must_use]
+    pub fn by(mut self, distance: TargetDistance) -> Self {
+        self.distance = distance;
+        self
+    }
+
+    /// By which distance f2 is measured.
+    pub fn distance(&self) -> TargetDistance {
+        self.distance
+    }
+
+    /// Evaluates a model by this distance over all snapshots.
+    pub fn evaluate_by(&mut self, distance: TargetDistance, model: &Model) -> Evaluation {
+        let usual = std::mem::replace(&mut self.distance, distance);
+        let evaluation = self.evaluate(model);
+        self.distance = usual;
+        evaluation
     }
 
     /// The model that a tree's blob will hold, with sigmoid steepness k; `None` without a pattern.
@@ -179,7 +201,7 @@ impl<'m> PartialEvaluation<'m> {
         } else {
             tracer.trace_finely(view)
         };
-        let value = evaluate_snapshot(world, snapshot, &contours, &evaluator.constraints);
+        let value = evaluate_snapshot(world, snapshot, &contours, &evaluator.constraints, evaluator.distance);
         evaluator.learn(place, value);
         self.values[place] = Some(value);
         self.update_bound(evaluator);

@@ -17,10 +17,21 @@ pub const WORST_F2: f64 = 2.0;
 /// Violation of a model without a pattern: no target is enclosed at any snapshot.
 const NO_PATTERN_VIOLATION: f64 = 1.0;
 
+/// Whose distance from a candidate point counts in f2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TargetDistance {
+    /// That of every target, averaged, as in the paper. Then two rings apart are always bad, for each is far from the other's
+    /// target.
+    #[default]
+    OfAll,
+    /// That of the nearest one.
+    OfNearest,
+}
+
 /// What the evaluation of a model in a scenario finds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evaluation {
-    /// The paper's f2, averaged over snapshots; in [0, 2], less is better.
+    /// f2, averaged over snapshots; in [0, 2], less is better.
     pub f2: f64,
     /// Mean over snapshots of the share of targets not enclosed plus the share of candidate points too close; 0 for a
     /// feasible model, at most 2.
@@ -67,13 +78,17 @@ pub(super) fn evaluate_snapshot(
     snapshot: &Snapshot,
     contours: &Contours,
     constraints: &Constraints,
+    distance: TargetDistance,
 ) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
     let lost = if constraints.enclosed { lost / snapshot.targets.len() as f64 } else { 0.0 };
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
     for ring in &contours.rings {
         let points = candidates(ring, CANDIDATES_PER_RING);
-        to_targets += sum_over(&snapshot.targets, &points, &world.terms.target);
+        to_targets += match distance {
+            TargetDistance::OfAll => sum_over(&snapshot.targets, &points, &world.terms.target),
+            TargetDistance::OfNearest => sum_of_nearest(&snapshot.targets, &points, &world.terms.target),
+        };
         to_obstacles += sum_over(&snapshot.obstacle_points, &points, &world.terms.obstacle);
         if let Some(clearance) = constraints.clearance {
             close += points.iter().filter(|&&point| world.is_closer_than(snapshot, point, clearance)).count();
@@ -84,9 +99,19 @@ pub(super) fn evaluate_snapshot(
         return Evaluation { f2: WORST_F2, violation: lost };
     }
     let count = count as f64;
-    let per_target = count * snapshot.targets.len() as f64;
+    let per_target = match distance {
+        TargetDistance::OfAll => count * snapshot.targets.len() as f64,
+        TargetDistance::OfNearest => count,
+    };
     let per_obstacle = count * snapshot.obstacle_points.len().max(1) as f64;
     Evaluation { f2: to_targets / per_target + to_obstacles / per_obstacle, violation: lost + close as f64 / count }
+}
+
+/// The sum of a term over points, each with its nearest source.
+fn sum_of_nearest(sources: &[Point<f64>], points: &[Point<f64>], term: &DistanceTable) -> f64 {
+    let squared = |source: &Point<f64>, point: Point<f64>| (point - *source).dot(point - *source);
+    let nearest = |&point: &Point<f64>| sources.iter().map(|source| squared(source, point)).fold(f64::MAX, f64::min);
+    points.iter().map(nearest).map(|squared| term.at(squared)).sum()
 }
 
 /// The sum of a term over all pairs of sources and points.

@@ -30,7 +30,7 @@ mod world;
 
 pub use constraints::{ConstraintNames, Constraints, SMALLEST_CLEARANCE};
 pub use evaluator::Evaluator;
-pub use fitness::{CANDIDATES_PER_RING, Evaluation};
+pub use fitness::{CANDIDATES_PER_RING, Evaluation, TargetDistance};
 pub use lattice::LATTICE_STEP;
 pub use model::Model;
 pub use tracer::{Contours, Tracer};

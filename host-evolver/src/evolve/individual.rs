@@ -2,7 +2,8 @@
 
 use super::objective::Candidate;
 use super::objectives::Objectives;
-use crate::evaluation::Evaluation;
+use super::settings::Settings;
+use crate::evaluation::{Evaluation, Evaluator, TargetDistance};
 use crate::model::tree::Tree;
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +15,11 @@ pub struct Individual {
     pub tree: Tree,
     /// The values of the run's objectives, in their order, less is better.
     pub objectives: Vec<f64>,
-    /// The paper's f2 in [0, 2], for which θ were tuned.
+    /// The paper's f2 in [0, 2].
     pub f2: f64,
+    /// f2 by the nearest target, if θ were tuned for that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub f2_nearest: Option<f64>,
     /// Constraint violation, 0 for a feasible model.
     pub violation: f64,
     /// What it cost in each simulated trial, trial 1 first.
@@ -24,18 +28,36 @@ pub struct Individual {
 }
 
 impl Individual {
-    /// An individual that has not been tried.
-    pub(super) fn new(tree: Tree, objectives: &Objectives, evaluation: Evaluation) -> Self {
-        let Evaluation { f2, violation } = evaluation;
-        let mut individual = Individual { tree, objectives: Vec::new(), f2, violation, trials: Vec::new() };
-        individual.value_trials(objectives);
+    /// An individual that has not been tried, from its evaluation by the distance that the evaluator uses.
+    pub(super) fn evaluated(
+        evaluator: &mut Evaluator<'_>,
+        settings: &Settings,
+        tree: Tree,
+        evaluation: Evaluation,
+    ) -> Self {
+        let by_nearest = evaluator.distance() == TargetDistance::OfNearest;
+        let of_all = match evaluator.model_of(&tree, settings.steepness) {
+            Some(model) if by_nearest => evaluator.evaluate_by(TargetDistance::OfAll, &model),
+            _ => evaluation,
+        };
+        let mut individual = Individual {
+            tree,
+            objectives: Vec::new(),
+            f2: of_all.f2,
+            f2_nearest: by_nearest.then_some(evaluation.f2),
+            violation: evaluation.violation,
+            trials: Vec::new(),
+        };
+        individual.value_trials(&settings.objectives);
         individual
     }
 
     /// Takes the values of the objectives from what is known by now.
     pub(super) fn value_trials(&mut self, objectives: &Objectives) {
         let evaluation = Evaluation { f2: self.f2, violation: self.violation };
-        self.objectives = objectives.values(&Candidate { tree: &self.tree, evaluation, trials: &self.trials });
+        let f2_nearest = self.f2_nearest.unwrap_or(self.f2);
+        let candidate = Candidate { tree: &self.tree, evaluation, f2_nearest, trials: &self.trials };
+        self.objectives = objectives.values(&candidate);
     }
 
     /// (f1, f2): how many nodes, and the ring error.

@@ -1,6 +1,7 @@
 //! The objectives of a run.
 
-use super::objective::{ALL, Candidate, ClosedLoop, Nodes, Objective, RingError};
+use super::objective::{ALL, Candidate, ClosedLoop, NearestRingError, Nodes, Objective, RingError};
+use crate::evaluation::TargetDistance;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -19,6 +20,16 @@ impl Objectives {
     /// What shows best what a swarm does: nodes and the closed loop.
     pub fn adaptive() -> Self {
         Objectives(vec![&Nodes, &ClosedLoop])
+    }
+
+    /// The f2 that θ are tuned for: by the nearest target, which is what the closed loop means, unless the paper's is asked for.
+    pub fn tuned_by(&self) -> TargetDistance {
+        let has = |name: &str| self.names().any(|other| other == name);
+        if has(NearestRingError.name()) || (self.need_trials() && !has(RingError.name())) {
+            TargetDistance::OfNearest
+        } else {
+            TargetDistance::OfAll
+        }
     }
 
     /// Whether some are made from simulated runs.

@@ -63,13 +63,13 @@ pub(super) fn refined(
             break;
         }
         let vectors = cma.ask(&mut rng);
-        let individual = |thetas: &Vec<f64>| {
+        let mut of_thetas = |thetas: &Vec<f64>| {
             let tree = member.tree.with_thetas(thetas);
             let model = evaluator.model_of(&tree, settings.steepness);
             let evaluation = model.map_or(Evaluation::NO_PATTERN, |model| evaluator.evaluate(&model));
-            Individual::new(tree, &settings.objectives, evaluation)
+            Individual::evaluated(evaluator, settings, tree, evaluation)
         };
-        let mut individuals: Vec<Individual> = vectors.iter().map(individual).collect();
+        let mut individuals: Vec<Individual> = vectors.iter().map(&mut of_thetas).collect();
         let feasible: Vec<usize> = (0..individuals.len()).filter(|&place| individuals[place].is_feasible()).collect();
         trials.extend(&mut individuals, &feasible, most, hopeless)?;
         let candidate = |individual: Individual| Candidate { cost: individual.cost().unwrap_or(f64::MAX), individual };

@@ -205,7 +205,7 @@ impl<'w> Search<'w> {
             Some(best) => (tree.with_thetas(&best.best), best.fitness),
             None => (tree.clone(), Evaluation::NO_PATTERN),
         };
-        Individual::new(tree, &self.settings.objectives, evaluation)
+        Individual::evaluated(evaluator, &self.settings, tree, evaluation)
     }
 
     fn milestone(&self) -> Milestone {

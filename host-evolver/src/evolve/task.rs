@@ -80,6 +80,9 @@ impl Task {
     /// An evaluator under the constraints of these settings.
     pub(super) fn evaluator(&self, settings: &Settings) -> Evaluator<'_> {
         let clearance = settings.clearance.unwrap_or_else(|| clearance_for(self.scale()));
-        Evaluator::among(&self.worlds, settings.constraints.with_clearance(clearance))
+        let evaluator = Evaluator::among(&self.worlds, settings.constraints.with_clearance(clearance));
+        // With a single target both distances are the same.
+        let have_several = self.scenarios().any(|scenario| scenario.targets().len() > 1);
+        if have_several { evaluator.by(settings.objectives.tuned_by()) } else { evaluator }
     }
 }

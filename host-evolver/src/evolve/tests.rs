@@ -194,6 +194,21 @@ fn the_knee_of_tried_models_is_confirmed_by_trials_that_the_search_has_not_seen(
 }
 
 #[test]
+fn f2_of_the_nearest_target_is_the_papers_for_one_target_and_less_for_two() {
+    let two = Task::in_one(scenario("channel-two-targets"), SwarmConfig::default());
+    let objectives: Objectives = "nodes,f2-nearest".parse().unwrap();
+    for (task, is_single) in [(channel(), true), (two, false)] {
+        let mut search = Search::new(&task, Settings { objectives: objectives.clone(), ..small() }, None).unwrap();
+        run(&mut search, 2);
+        for individual in search.state().population.iter().filter(|one| one.is_feasible()) {
+            let nearest = individual.objectives[1];
+            assert_eq!(nearest == individual.f2, is_single, "{individual:?}");
+            assert!(nearest <= individual.f2, "{individual:?}");
+        }
+    }
+}
+
+#[test]
 fn worlds_with_different_morphogens_have_no_common_model() {
     let swarm = usual_config(0.25, Laboratory::default());
     let other = scenario("channel").to_toml().replace("target_width = 1.5", "target_width = 1.4");

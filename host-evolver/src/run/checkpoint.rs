@@ -71,12 +71,15 @@ fn check(state: &State, settings: &Settings) -> Result<(), String> {
 
 fn check_individual(individual: &Individual, settings: &Settings) -> Result<(), String> {
     let count = settings.objectives.names().count();
-    let Individual { tree, objectives, f2, violation, trials } = individual;
+    let Individual { tree, objectives, f2, f2_nearest, violation, trials } = individual;
     let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
     let theta = tree.thetas().into_iter().find(|theta| !(low..=high).contains(theta));
     match theta {
         Some(theta) => Err(format!("theta = {theta} is not in [{low}, {high}]")),
         None if !(0.0..=2.0).contains(f2) => Err(format!("f2 = {f2} is not in [0, 2]")),
+        None if f2_nearest.is_some_and(|f2| !(0.0..=2.0).contains(&f2)) => {
+            Err(format!("f2_nearest = {f2_nearest:?} is not in [0, 2]"))
+        }
         None if objectives.len() != count || !objectives.iter().all(|value| value.is_finite()) => {
             Err(format!("objectives = {objectives:?} are not {count} finite numbers"))
         }

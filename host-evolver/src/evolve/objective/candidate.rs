@@ -10,6 +10,8 @@ pub struct Candidate<'a> {
     pub tree: &'a Tree,
     /// The paper's f2 and the constraint violation in the worlds.
     pub evaluation: Evaluation,
+    /// f2 by the nearest target.
+    pub f2_nearest: f64,
     /// The cost of each simulated run so far.
     pub trials: &'a [f64],
 }

@@ -5,13 +5,15 @@
 
 mod candidate;
 mod closed_loop;
+mod nearest;
 mod nodes;
 mod ring_error;
 
 pub use candidate::{Candidate, Objective};
 pub use closed_loop::{ClosedLoop, Worst};
+pub use nearest::NearestRingError;
 pub use nodes::Nodes;
 pub use ring_error::RingError;
 
 /// All objectives, the paper's first.
-pub const ALL: &[&'static dyn Objective] = &[&Nodes, &RingError, &ClosedLoop, &Worst];
+pub const ALL: &[&'static dyn Objective] = &[&Nodes, &RingError, &NearestRingError, &ClosedLoop, &Worst];

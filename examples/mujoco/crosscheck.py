@@ -55,10 +55,10 @@ def one(model: Path, lab: str, seed: int, kept: Path) -> dict[str, Any]:
 
 
 def evolved(folder: Path) -> Path:
-    """The knee of the main job, evolved anew if need be."""
+    """A knee of the paper's algorithm, evolved anew if need be."""
     if not (folder / "knee.grn").exists():
         print("evolving a knee for scenarios/channel.toml, seed 1", flush=True)
-        grn.evolve(SCENARIO, out=folder, seed=1, resume=(folder / "manifest.json").exists())
+        grn.evolve(SCENARIO, out=folder, seed=1, paper=True, resume=(folder / "manifest.json").exists())
     return folder / "knee.grn"
 
 

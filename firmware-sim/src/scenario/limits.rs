@@ -29,6 +29,8 @@ const MAX_TABLE: f64 = (1 << 20) as f64;
 pub const REGION: Range<f64> = Range::new(0.5, 3000.0, "metres");
 /// How far walls may stick out of the region.
 pub const WALL_OVERHANG: f64 = 100.0;
+/// Radii of discs.
+pub const DISC_RADIUS: Range<f64> = Range::new(0.01, 100.0, "metres (not centimetres)");
 /// How long a run may take, if the scenario says it.
 pub const DURATION: Range<f64> = Range::new(0.1, 3_600_000.0, "seconds");
 /// What a blob can hold.

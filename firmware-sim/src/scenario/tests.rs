@@ -1,6 +1,8 @@
 use super::*;
 
+mod discs;
 mod moving;
+mod starts;
 use grn_core::geometry::Vector;
 
 const CHANNEL: &str = include_str!("../../../scenarios/channel.toml");

@@ -22,12 +22,15 @@ pub(super) fn draw(
 ) -> Result<Contents, FileError> {
     let scenarios: Vec<&PlannedScenario> = plan.scenarios.iter().filter(|planned| !planned.varied).collect();
     let mut pictures = Pictures::default();
-    for (measure, stem) in [
+    let measures = [
         (Measure::KneeF2, "f2-of-knees"),
         (Measure::BestF2, "f2"),
         (Measure::BestNodes, "nodes"),
         (Measure::KneeNodes, "nodes-of-knees"),
-    ] {
+        (Measure::Cost, "cost-of-knees"),
+    ];
+    let is_measured = |(measure, _): &(Measure, &str)| *measure != Measure::Cost || plan.simulate.is_some();
+    for (measure, stem) in measures.into_iter().filter(is_measured) {
         pictures.add_pages(stem, boxes(plan, &scenarios, tables, measure));
     }
     pictures.add_pages("convergence", grn_figures::convergence(&convergence(plan, campaign)?));
@@ -79,10 +82,10 @@ fn boxes(
     tables: &Tables,
     measure: Measure,
 ) -> Result<Vec<String>, FigureError> {
-    let is_knee = matches!(measure, Measure::KneeF2 | Measure::KneeNodes);
-    let value = |run: &RunRow| {
-        let violation = if is_knee { run.knee_violation } else { run.best_violation };
-        (violation == 0.0).then(|| measure.of(run))
+    let value = |run: &RunRow| match measure {
+        Measure::Cost => run.cost,
+        Measure::KneeF2 | Measure::KneeNodes => (run.knee_violation == 0.0).then(|| measure.of(run)),
+        _ => (run.best_violation == 0.0).then(|| measure.of(run)),
     };
     let panel = |planned: &&PlannedScenario| grn_figures::BoxPanel {
         title: planned.scenario.name().into(),

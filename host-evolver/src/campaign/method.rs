@@ -1,9 +1,9 @@
 //! The ways to a model that a campaign can compare. Another is a variant of [`Method`] and its run.
 
-use crate::evaluation::World;
+use crate::evaluation::{ConstraintNames, World};
 use crate::evolve::eh_grn::{self, Structure};
 use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings, Task};
-use crate::model::variation::MotifSet;
+use crate::model::variation::{Inputs, MotifSet};
 use grn_optimisers::knee::Knee;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
@@ -22,12 +22,37 @@ pub enum Method {
         /// What is minimised; nodes and f2 if not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         objectives: Option<Objectives>,
+        /// What patterns must keep to; the paper's, or all for objectives made from trials, if not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        constraints: Option<ConstraintNames>,
+        /// Trials of models on the front; 16 if not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        realities: Option<usize>,
+        /// What models may read; both inputs if not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        inputs: Option<Inputs>,
+        /// Whether it is a random search.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        random: Option<bool>,
+        /// Which member of the front is deployed; the knee if not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        deploys: Option<Deploys>,
     },
     /// EH-GRN with CMA-ES.
     EhGrn {
         /// Which printed structure.
         structure: Structure,
     },
+}
+
+/// Which member of a front is deployed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Deploys {
+    /// The knee.
+    Knee,
+    /// The one that is best in the last objective.
+    Best,
 }
 
 /// What a run leaves.
@@ -42,8 +67,22 @@ pub struct Outcome {
 impl Method {
     /// The settings of a search, if it is one.
     fn settings(&self, evaluations: usize, seed: u64) -> Option<Settings> {
-        let Method::Mogp { motifs, de_generations, objectives } = self else { return None };
-        let mut settings = Settings { seed, evaluations, motifs: *motifs, ..Settings::default() };
+        let Method::Mogp { motifs, de_generations, objectives, constraints, realities, inputs, random, .. } = self
+        else {
+            return None;
+        };
+        let tried = objectives.as_ref().is_some_and(Objectives::need_trials);
+        let usual = if tried { Settings::adaptive() } else { Settings::default() };
+        let mut settings = Settings {
+            seed,
+            evaluations,
+            motifs: *motifs,
+            inputs: inputs.unwrap_or(usual.inputs),
+            random: random.unwrap_or(usual.random),
+            constraints: constraints.unwrap_or(usual.constraints),
+            realities: realities.unwrap_or(usual.realities),
+            ..usual
+        };
         settings.de.generations = de_generations.unwrap_or(settings.de.generations);
         settings.objectives = objectives.clone().unwrap_or(settings.objectives);
         Some(settings)
@@ -65,7 +104,13 @@ impl Method {
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.
     pub fn run(&self, task: &Task, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
         match self {
-            Method::Mogp { .. } => mogp(task, self.settings(evaluations, seed)?, stop),
+            Method::Mogp { deploys, .. } => {
+                let mut outcome = mogp(task, self.settings(evaluations, seed)?, stop)?;
+                if *deploys == Some(Deploys::Best) {
+                    deploy_best(&self.objectives(), &mut outcome.front);
+                }
+                Some(outcome)
+            }
             Method::EhGrn { structure } => baseline(&task.worlds()[0], *structure, evaluations, seed, stop),
         }
     }
@@ -81,6 +126,18 @@ fn mogp(task: &Task, settings: Settings, stop: &AtomicBool) -> Option<Outcome> {
         }
     }
     Some(Outcome { front: search.confirmed_front(stop)?, history: search.state().history.clone() })
+}
+
+/// Makes the member that is best in the last objective the only knee.
+fn deploy_best(objectives: &Objectives, front: &mut [FrontMember]) {
+    let last = |member: &FrontMember| {
+        let values = objectives.in_order(member.nodes as f64, member.f2, &member.further);
+        values.last().copied().unwrap_or(f64::MAX)
+    };
+    let best = (0..front.len()).min_by(|&a, &b| last(&front[a]).total_cmp(&last(&front[b])));
+    for (place, member) in front.iter_mut().enumerate() {
+        member.knee = Knee { parsimony: best == Some(place), ..Knee::default() };
+    }
 }
 
 fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {

@@ -1,14 +1,14 @@
 //! The campaign file as it stands, and the checks that make it a [`Plan`].
 
-use super::method::Method;
+use super::method::{Deploys, Method};
 use super::plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer, slug};
 use super::simulate::SimulateTable;
 use super::vary::Variations;
-use crate::evaluation::Model;
+use crate::evaluation::{ConstraintNames, Model};
 use crate::evolve::eh_grn::Structure;
-use crate::evolve::{MOST_EVALUATIONS, Objectives};
+use crate::evolve::{MOST_EVALUATIONS, MOST_REALITIES, Objectives};
 use crate::files::read_blob;
-use crate::model::variation::MotifSet;
+use crate::model::variation::{Inputs, MotifSet};
 use firmware_sim::scenario::{RandomObstacles, Scenario};
 use grn_input::{Found, InputError, Pair, Range, check_name};
 use serde::Deserialize;
@@ -33,6 +33,8 @@ const SEEDS: Range<i64> = Range::new(1, 10_000, "(a whole one)");
 const EVALUATIONS: Range<i64> = Range::new(1, MOST_EVALUATIONS as i64, "(a whole one)");
 /// Generations of DE: with 1000, one generation of the search takes 400,400 evaluations.
 const DE_GENERATIONS: Range<i64> = Range::new(0, 1000, "(a whole one)");
+/// Trials of models on the front.
+const REALITIES: Range<i64> = Range::new(1, MOST_REALITIES as i64, "(a whole one)");
 const RANDOM_WORLDS: Range<i64> = Range::new(1, MOST_RANDOM_WORLDS as i64, "(a whole one)");
 /// Seeds of worlds: TOML's integers, with room for the worlds that follow the first.
 const RANDOM_SEED: Range<i64> = Range::new(0, i64::MAX - MOST_RANDOM_WORLDS as i64, "(a whole one)");
@@ -74,6 +76,11 @@ struct MethodTable {
     motifs: Option<MotifSet>,
     de_generations: Option<i64>,
     objectives: Option<Objectives>,
+    constraints: Option<ConstraintNames>,
+    realities: Option<i64>,
+    inputs: Option<Inputs>,
+    random: Option<bool>,
+    deploys: Option<Deploys>,
     structure: Option<Structure>,
 }
 
@@ -167,7 +174,9 @@ fn check_folder(key: &str, what: &str, name: &str, seen: &[(String, &str)]) -> R
 fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, InputError> {
     let planned = |(place, table): (usize, MethodTable)| {
         let key = |name: &str| format!("method[{place}].{name}");
-        let MethodTable { name, baseline, algorithm, motifs, de_generations, objectives, structure } = table;
+        let MethodTable { name, baseline, algorithm, structure, .. } = table;
+        let MethodTable { motifs, de_generations, objectives, constraints, realities, inputs, random, deploys, .. } =
+            table;
         let missing =
             |name: &str, of: &str| InputError::new(key(name), "", format!("is missing; algorithm \"{of}\" needs it"));
         let foreign = |name: &str, of: &str| {
@@ -177,16 +186,34 @@ fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, Input
             Algorithm::Mogp if structure.is_some() => return Err(foreign("structure", "mogp")),
             Algorithm::Mogp => {
                 let generations = de_generations.map(|count| DE_GENERATIONS.check(&key("de_generations"), count));
+                let realities = realities.map(|count| REALITIES.check(&key("realities"), count)).transpose()?;
                 Method::Mogp {
                     motifs: motifs.ok_or_else(|| missing("motifs", "mogp"))?,
                     de_generations: generations.transpose()?.map(|count| count as usize),
                     objectives,
+                    constraints,
+                    realities: realities.map(|count| count as usize),
+                    inputs,
+                    random,
+                    deploys,
                 }
             }
-            Algorithm::EhGrn if motifs.is_some() => return Err(foreign("motifs", "eh-grn")),
-            Algorithm::EhGrn if de_generations.is_some() => return Err(foreign("de_generations", "eh-grn")),
-            Algorithm::EhGrn if objectives.is_some() => return Err(foreign("objectives", "eh-grn")),
-            Algorithm::EhGrn => Method::EhGrn { structure: structure.ok_or_else(|| missing("structure", "eh-grn"))? },
+            Algorithm::EhGrn => {
+                let of_mogp = [
+                    ("motifs", motifs.is_some()),
+                    ("de_generations", de_generations.is_some()),
+                    ("objectives", objectives.is_some()),
+                    ("constraints", constraints.is_some()),
+                    ("realities", realities.is_some()),
+                    ("inputs", inputs.is_some()),
+                    ("random", random.is_some()),
+                    ("deploys", deploys.is_some()),
+                ];
+                if let Some((given, _)) = of_mogp.into_iter().find(|(_, is_given)| *is_given) {
+                    return Err(foreign(given, "eh-grn"));
+                }
+                Method::EhGrn { structure: structure.ok_or_else(|| missing("structure", "eh-grn"))? }
+            }
         };
         Ok(PlannedMethod { name, baseline, method })
     };

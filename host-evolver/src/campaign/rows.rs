@@ -19,12 +19,17 @@ pub enum Measure {
     KneeNodes,
     /// Share of the box below the reference that the feasible front dominates.
     Hypervolume,
+    /// Cost J of the knee on simulated swarms, mean over realities.
+    Cost,
 }
 
+/// What a knee costs that cannot drive a robot: no target caged, and all robots out of the band and always in contact.
+const UNFIT: f64 = 7.0;
+
 impl Measure {
-    /// All of them.
-    pub const ALL: [Measure; 5] =
-        [Measure::BestF2, Measure::BestNodes, Measure::KneeF2, Measure::KneeNodes, Measure::Hypervolume];
+    /// All of them; the last is of campaigns that simulate knees.
+    pub const ALL: [Measure; 6] =
+        [Measure::BestF2, Measure::BestNodes, Measure::KneeF2, Measure::KneeNodes, Measure::Hypervolume, Measure::Cost];
 
     /// What it is called where there is room.
     pub fn words(self) -> &'static str {
@@ -34,6 +39,7 @@ impl Measure {
             Measure::KneeF2 => "f2 of the knee",
             Measure::KneeNodes => "nodes of the knee",
             Measure::Hypervolume => "hypervolume",
+            Measure::Cost => "cost J of the knee",
         }
     }
 
@@ -45,6 +51,7 @@ impl Measure {
             Measure::KneeF2 => "knee f2",
             Measure::KneeNodes => "knee nodes",
             Measure::Hypervolume => "hypervolume",
+            Measure::Cost => "cost J",
         }
     }
 
@@ -57,6 +64,7 @@ impl Measure {
             Measure::KneeF2 => with_penalty(run.knee_f2, run.knee_violation),
             Measure::KneeNodes => run.knee_nodes as f64,
             Measure::Hypervolume => run.hypervolume,
+            Measure::Cost => run.cost.unwrap_or(UNFIT),
         }
     }
 
@@ -93,6 +101,8 @@ pub struct RunRow {
     pub knee_violation: f64,
     /// Share of the box below the reference that the feasible front dominates.
     pub hypervolume: f64,
+    /// Cost J of the knee, mean over the realities in which it was simulated; nothing if it was not, or cannot drive a robot.
+    pub cost: Option<f64>,
 }
 
 /// Quartiles over the seeds: a line of `summary.csv`.

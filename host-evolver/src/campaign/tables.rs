@@ -40,8 +40,14 @@ impl Tables {
         trials: Vec<(&str, usize, Vec<Trial>)>,
         simulations: &[(Unit, Vec<Reality>)],
     ) -> Result<Tables, FileError> {
-        let runs =
-            Unit::all(plan).into_iter().map(|unit| run_row(unit, plan, campaign)).collect::<Result<Vec<_>, _>>()?;
+        let cost = |unit: Unit| {
+            let realities =
+                simulations.iter().find(|(simulated, _)| *simulated == unit).map(|(_, realities)| realities);
+            realities.and_then(|realities| mean(realities, |reality| reality.cost))
+        };
+        let run = |unit: Unit| run_row(unit, plan, campaign, cost(unit));
+        let runs = Unit::all(plan).into_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        let is_measured = |measure: &Measure| *measure != Measure::Cost || plan.simulate.is_some();
         let mut tables = Tables { transfers: transfer_rows(&trials), ..Tables::default() };
         if let Some(simulate) = &plan.simulate {
             (tables.simulations, tables.simulated) = simulation_rows(plan, simulate, simulations);
@@ -52,9 +58,10 @@ impl Tables {
             };
             for planned in &plan.methods {
                 let rows = rows_of(&planned.name);
-                tables.summaries.extend(Measure::ALL.iter().filter_map(|&measure| summary(measure, &rows)));
+                let measures = Measure::ALL.into_iter().filter(is_measured);
+                tables.summaries.extend(measures.filter_map(|measure| summary(measure, &rows)));
             }
-            for measure in Measure::ALL {
+            for measure in Measure::ALL.into_iter().filter(is_measured) {
                 for baseline in plan.methods.iter().filter(|planned| planned.baseline) {
                     for method in plan.methods.iter().filter(|planned| !planned.baseline) {
                         let (rows, against) = (rows_of(&method.name), rows_of(&baseline.name));
@@ -99,7 +106,12 @@ impl Tables {
     }
 }
 
-fn run_row(unit: Unit, plan: &Plan, campaign: &Path) -> Result<RunRow, FileError> {
+/// The mean of a measure; `None` without realities, of a knee that cannot drive a robot.
+fn mean(realities: &[Reality], measure: impl Fn(&Reality) -> f64) -> Option<f64> {
+    (!realities.is_empty()).then(|| realities.iter().map(measure).sum::<f64>() / realities.len() as f64)
+}
+
+fn run_row(unit: Unit, plan: &Plan, campaign: &Path, cost: Option<f64>) -> Result<RunRow, FileError> {
     let front = unit.front(plan, campaign)?;
     let empty = || FileError::new(campaign.join(unit.folder(plan)), "the front is empty; delete this run");
     let better = |a: &&FrontMember, b: &&FrontMember| a.violation.total_cmp(&b.violation).then(a.f2.total_cmp(&b.f2));
@@ -120,6 +132,7 @@ fn run_row(unit: Unit, plan: &Plan, campaign: &Path) -> Result<RunRow, FileError
         knee_nodes: knee.nodes,
         knee_violation: knee.violation,
         hypervolume: front_hypervolume(feasible.map(|member| [member.nodes as f64, member.f2])),
+        cost,
     })
 }
 
@@ -221,9 +234,6 @@ fn simulation_rows(
     let median = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
         Robustness { realities: realities.to_vec() }.quantile(0.5, measure)
     };
-    let mean = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
-        (!realities.is_empty()).then(|| Robustness { realities: realities.to_vec() }.mean(measure))
-    };
     let row = |(unit, realities): &(Unit, Vec<Reality>)| {
         // A knee that cannot drive a robot works nowhere.
         let works = realities.iter().filter(|reality| reality.works).count();
@@ -239,8 +249,8 @@ fn simulation_rows(
             rate: works as f64 / count as f64,
             low,
             high,
-            caged: mean(realities, &|reality| reality.caged_share).unwrap_or(0.0),
-            cost: mean(realities, &|reality| reality.cost),
+            caged: mean(realities, |reality| reality.caged_share).unwrap_or(0.0),
+            cost: mean(realities, |reality| reality.cost),
             radial_error: median(realities, &error).filter(|error| error.is_finite()),
         }
     };

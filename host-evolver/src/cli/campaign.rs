@@ -138,7 +138,8 @@ fn text(tables: &Tables) -> String {
         _ => format!("{value:.5}"),
     };
     let mut text = String::new();
-    for measure in Measure::ALL {
+    let is_measured = |measure: &Measure| tables.summaries.iter().any(|row| row.measure == *measure);
+    for measure in Measure::ALL.into_iter().filter(is_measured) {
         let rows = tables.summaries.iter().filter(|row| row.measure == measure).map(|row| {
             let feasible = format!("{} of {}", row.feasible, row.runs);
             let quartiles = row.quartile_words(|value| number(measure, value));

@@ -21,7 +21,7 @@ use super::task::Task;
 use super::trials::Trials;
 use crate::evaluation::{Evaluation, Evaluator, Model};
 use crate::model::tree::Tree;
-use crate::model::variation::{Grammar, Variation};
+use crate::model::variation::{Afresh, Grammar, Variation};
 use grn_core::network::THETA_RANGE;
 use grn_optimisers::bounds::Bounds;
 use grn_optimisers::de::{self, Wanted};
@@ -68,8 +68,9 @@ impl<'w> Search<'w> {
     /// Settings that make no sense, with the value and what is needed.
     pub fn new(task: &'w Task, settings: Settings, state: Option<State>) -> Result<Self, SettingsError> {
         let theta = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
-        let grammar = Grammar::new(settings.motifs, settings.depth, theta);
-        Search::with(task, settings, Box::new(grammar), state)
+        let grammar = Grammar::new(settings.motifs, settings.depth, theta).reading(settings.inputs);
+        let variation: Box<dyn Variation> = if settings.random { Box::new(Afresh(grammar)) } else { Box::new(grammar) };
+        Search::with(task, settings, variation, state)
     }
 
     /// A run with other variation.

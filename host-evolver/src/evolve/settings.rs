@@ -2,7 +2,7 @@
 
 use super::objectives::Objectives;
 use crate::evaluation::{ConstraintNames, SMALLEST_CLEARANCE};
-use crate::model::variation::MotifSet;
+use crate::model::variation::{Inputs, MotifSet};
 use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -28,6 +28,12 @@ pub struct Settings {
     pub population: usize,
     /// Motifs to build with.
     pub motifs: MotifSet,
+    /// What models may read.
+    #[serde(default)]
+    pub inputs: Inputs,
+    /// Whether all structures are drawn anew instead of bred from good ones: a random search, for comparison.
+    #[serde(default)]
+    pub random: bool,
     /// Least and greatest depth of a tree, in edges.
     pub depth: (usize, usize),
     /// Steepness k of every sigmoid.
@@ -69,6 +75,8 @@ impl Default for Settings {
             objectives: Objectives::paper(),
             population: 40,
             motifs: MotifSet::All,
+            inputs: Inputs::Both,
+            random: false,
             depth: (1, 4),
             steepness: 1.0,
             crossover: 1.0,

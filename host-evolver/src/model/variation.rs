@@ -26,6 +26,26 @@ impl MotifSet {
     }
 }
 
+/// What trees may read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Inputs {
+    /// x1 and x2.
+    #[default]
+    Both,
+    /// x1 alone: the models are blind to obstacles, and around a lone target every pattern is a circle.
+    Targets,
+}
+
+impl Inputs {
+    fn terminals(self) -> &'static [Terminal] {
+        match self {
+            Inputs::Both => &[Terminal::X1, Terminal::X2],
+            Inputs::Targets => &[Terminal::X1],
+        }
+    }
+}
+
 /// How trees are created and varied. Every call uses only the given random numbers, so equal seeds give equal trees.
 pub trait Variation: Send + Sync {
     /// Individual number `place` of an initial population.
@@ -40,6 +60,7 @@ pub trait Variation: Send + Sync {
 #[derive(Clone, Debug)]
 pub struct Grammar {
     motifs: Vec<Motif>,
+    terminals: &'static [Terminal],
     depth: (usize, usize),
     theta: (f64, f64),
 }
@@ -47,7 +68,14 @@ pub struct Grammar {
 impl Grammar {
     /// Trees of the given motifs with depth (in edges) and θ in the given inclusive ranges; least depth 1.
     pub fn new(motifs: MotifSet, depth: (usize, usize), theta: (f64, f64)) -> Grammar {
-        Grammar { motifs: motifs.motifs(), depth: (depth.0.max(1), depth.1.max(depth.0).max(1)), theta }
+        let depth = (depth.0.max(1), depth.1.max(depth.0).max(1));
+        Grammar { motifs: motifs.motifs(), terminals: Inputs::Both.terminals(), depth, theta }
+    }
+
+    /// The same for trees that read no more than this.
+    #[must_use]
+    pub fn reading(self, inputs: Inputs) -> Grammar {
+        Grammar { terminals: inputs.terminals(), ..self }
     }
 
     /// A random tree of at most `depth` edges, with a motif at its root; full trees have all leaves at that depth.
@@ -58,11 +86,10 @@ impl Grammar {
     }
 
     fn grow(&self, depth: usize, full: bool, root: bool, rng: &mut impl Rng, nodes: &mut Vec<Node>) {
-        const TERMINALS: [Terminal; 2] = [Terminal::X1, Terminal::X2];
-        let symbols = self.motifs.len() + TERMINALS.len();
+        let symbols = self.motifs.len() + self.terminals.len();
         let inner = depth > 0 && (full || root || rng.random_range(0..symbols) < self.motifs.len());
         if !inner {
-            nodes.push(Node::Terminal(TERMINALS[rng.random_range(0..TERMINALS.len())]));
+            nodes.push(Node::Terminal(self.terminals[rng.random_range(0..self.terminals.len())]));
             return;
         }
         let motif = self.motifs[rng.random_range(0..self.motifs.len())];
@@ -107,6 +134,28 @@ impl Variation for Grammar {
         tree.with_subtree(point, &nodes)
     }
 }
+
+/// No variation at all: every tree is drawn anew. A search with it is a random search.
+#[derive(Clone, Debug)]
+pub struct Afresh(pub Grammar);
+
+impl Variation for Afresh {
+    fn create(&self, place: usize, rng: &mut dyn Rng) -> Tree {
+        self.0.create(place, rng)
+    }
+
+    fn cross(&self, _: &Tree, _: &Tree, mut rng: &mut dyn Rng) -> Tree {
+        let place = rng.random_range(0..PLACES);
+        self.0.create(place, &mut rng)
+    }
+
+    fn mutate(&self, tree: &Tree, _: &mut dyn Rng) -> Tree {
+        tree.clone()
+    }
+}
+
+/// Ramped half-and-half repeats itself after so many places, for every greatest depth that is possible.
+const PLACES: usize = 24;
 
 /// A node of `tree` among those that fit, inner nodes with [`INNER_NODE_BIAS`]; `None` if none fits.
 fn pick(tree: &Tree, fits: impl Fn(usize) -> bool, rng: &mut impl Rng) -> Option<usize> {
@@ -164,6 +213,18 @@ mod tests {
             trees[a] = child;
         }
         assert!(changed > 2500, "crossover changed only {changed} of 5000 trees");
+    }
+
+    #[test]
+    fn blind_trees_read_targets_only() {
+        let grammar = grammar(MotifSet::All).reading(Inputs::Targets);
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let reads = |tree: &Tree, input| tree.nodes().contains(&Node::Terminal(input));
+        for place in 0..200 {
+            let tree = grammar.create(place, &mut rng);
+            let child = grammar.mutate(&Afresh(grammar.clone()).cross(&tree, &tree, &mut rng), &mut rng);
+            assert!(reads(&child, Terminal::X1) && !reads(&tree, Terminal::X2) && !reads(&child, Terminal::X2));
+        }
     }
 
     #[test]

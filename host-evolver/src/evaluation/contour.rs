@@ -1,19 +1,18 @@
 //! On one lattice: flood the inside component of a target, then follow its edge.
 
-use super::candidates::thinned;
-use super::corners::with_corners;
-use super::error_table::ErrorTable;
-use super::lanes::{Lanes, WIDTH};
+use super::lanes::WIDTH;
 use super::lattice::{Direction, Edge, NodeIndex, Site};
 use super::medium::Medium;
-use super::model::Model;
-use super::world::Snapshot;
+use super::refine::refined;
+use super::view::View;
+use super::world::World;
 use grn_core::geometry::Point;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A ring's points are at least this far apart, in lattice steps.
-const CLOSEST_POINTS: f64 = 0.25;
+/// Topology is in doubt if raising or lowering the level by this pattern error changes it: a necking or a gap that shallow
+/// can hide within one cell of the coarse lattice.
+pub(super) const DOUBT: f64 = 0.02;
 
 /// What a flood found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,15 +21,6 @@ pub(super) enum Component {
     Closed,
     /// It touches a wall or the lattice's border.
     Leaks,
-}
-
-/// A model at a snapshot, as the follower looks at it.
-#[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub(super) model: &'a Model,
-    pub(super) snapshot: &'a Snapshot,
-    /// Where to look nodes up, if the table is accurate enough for this model.
-    pub(super) table: Option<&'a ErrorTable>,
 }
 
 /// A crossing of the contour: from an inside node to an outside neighbour.
@@ -49,6 +39,9 @@ pub(super) struct Follower<M> {
     components: Vec<u32>,
     component: u32,
     components_before: u32,
+    /// Whether the last explored component is not what the coarse lattice shows, and whether it may touch a wall unseen.
+    misled: bool,
+    may_touch: bool,
     /// Directions in which the contour has been followed across the edge to that neighbour, as bits.
     followed: Vec<u8>,
     flood: Vec<NodeIndex>,
@@ -69,12 +62,18 @@ impl<M: Medium> Follower<M> {
             components: vec![0; nodes],
             component: 0,
             components_before: 0,
+            misled: false,
+            may_touch: false,
             followed: vec![0; nodes],
             flood: Vec::new(),
             frontier: BinaryHeap::new(),
             crossings: Vec::new(),
             edges: Vec::new(),
         }
+    }
+
+    pub(super) fn world(&self) -> &World {
+        self.medium.world()
     }
 
     /// Forgets the last model and snapshot.
@@ -88,10 +87,32 @@ impl<M: Medium> Follower<M> {
         self.components_before = self.component;
     }
 
-    /// The node next to `target` from which its component can be flooded: nearest first, error at least `threshold`.
+    /// The node next to `target` from which its component can be flooded: nearest first, error at least `threshold`, and
+    /// not behind a wall.
     pub(super) fn start(&mut self, target: Point<f64>, threshold: f64, view: View<'_>) -> Option<NodeIndex> {
         let corners = self.medium.lattice().cell_around(target)?;
-        corners.into_iter().find(|&node| self.error(node, view) >= threshold)
+        corners
+            .into_iter()
+            .find(|&node| self.error(node, view) >= threshold && !self.is_behind_wall(node, target, view))
+    }
+
+    fn is_behind_wall(&self, node: NodeIndex, target: Point<f64>, view: View<'_>) -> bool {
+        let way = self.medium.lattice().point(node) - target;
+        let length = way.length();
+        let is_near = self.medium.clearance(view.snapshot, node) < length;
+        let meets_wall = |along| view.snapshot.walls().ray(target, along, length).is_some();
+        is_near && way.direction().is_some_and(meets_wall)
+    }
+
+    /// Whether the last explored component is not what the coarse lattice shows: a wall passes through it between two nodes,
+    /// or x2 changes too fast for the lattice.
+    pub(super) fn is_misled(&self) -> bool {
+        self.misled
+    }
+
+    /// Whether the last explored component may touch a wall that the coarse lattice does not show.
+    pub(super) fn may_touch(&self) -> bool {
+        self.may_touch
     }
 
     /// The number of the last explored component; numbers count up from 1.
@@ -150,16 +171,19 @@ impl<M: Medium> Follower<M> {
     /// nearest to walls are looked at first. It labels what it sees.
     pub(super) fn finds_leak(&mut self, start: NodeIndex, threshold: f64, most: usize, view: View<'_>) -> bool {
         self.component += 1;
+        (self.misled, self.may_touch) = (false, false);
         self.frontier.clear();
         self.approach(start, view);
         for _ in 0..most {
             let Some(Reverse((_, node))) = self.frontier.pop() else { return false };
-            if self.medium.site(view.snapshot, node) == Site::Leak {
-                return true;
-            }
+            let blocked = match self.medium.site(view.snapshot, node) {
+                Site::Leak => return true,
+                site => self.blocked(node, site, threshold, view),
+            };
             for direction in Direction::ALL {
                 let neighbour = self.medium.lattice().neighbour(node, direction);
-                if self.components[neighbour] != self.component && self.error(neighbour, view) >= threshold {
+                let is_new = self.components[neighbour] != self.component && !blocked[direction.index()];
+                if is_new && self.error(neighbour, view) >= threshold {
                     self.approach(neighbour, view);
                 }
             }
@@ -188,17 +212,44 @@ impl<M: Medium> Follower<M> {
 
     fn flood_at(&mut self, threshold: f64, view: View<'_>) -> Component {
         while let Some(node) = self.flood.pop() {
-            if self.medium.site(view.snapshot, node) == Site::Leak {
-                return Component::Leaks;
-            }
+            let blocked = match self.medium.site(view.snapshot, node) {
+                Site::Leak => return Component::Leaks,
+                site => self.blocked(node, site, threshold, view),
+            };
             for direction in Direction::ALL {
                 let neighbour = self.medium.lattice().neighbour(node, direction);
-                if self.components[neighbour] != self.component && self.error(neighbour, view) >= threshold {
+                let is_new = self.components[neighbour] != self.component && !blocked[direction.index()];
+                if is_new && self.error(neighbour, view) >= threshold {
                     self.join(neighbour);
                 }
             }
         }
         Component::Closed
+    }
+
+    /// In which directions a wall that the lattice does not show lies between a node of a component and its neighbour. It is noted
+    /// if the neighbour is inside, too, and if the component would hold a point of the walls beside the node.
+    #[inline(always)]
+    fn blocked(&mut self, node: NodeIndex, site: Site, threshold: f64, view: View<'_>) -> [bool; 4] {
+        if site == Site::Beside { self.look_beside(node, threshold, view) } else { [false; 4] }
+    }
+
+    #[cold]
+    fn look_beside(&mut self, node: NodeIndex, threshold: f64, view: View<'_>) -> [bool; 4] {
+        let ground = &view.snapshot.ground;
+        self.misled |= self.medium.clearance(view.snapshot, node) < ground.blurred;
+        let Some(beside) = ground.beside(node) else { return [false; 4] };
+        for direction in Direction::ALL.into_iter().filter(|direction| beside.blocked[direction.index()]) {
+            self.misled |= self.error(self.medium.lattice().neighbour(node, direction), view) >= threshold;
+        }
+        let error = |&point: &Point<f64>| {
+            let [x1, x2] = self.medium.world().inputs_at(view.snapshot, point);
+            view.model.error(x1, x2)
+        };
+        // Between two crossings a wall may come a little nearer to a target than there.
+        let crossed = beside.crossings.iter().any(|crossing| error(crossing) >= -DOUBT);
+        self.may_touch |= crossed || beside.vertices.iter().any(|vertex| error(vertex) >= 0.0);
+        beside.blocked
     }
 
     /// Labels the component of `start` and collects where its edge crosses the lattice. May stop at the first leak.
@@ -207,15 +258,20 @@ impl<M: Medium> Follower<M> {
         let mut found = Component::Closed;
         self.crossings.clear();
         while let Some(node) = self.flood.pop() {
-            if self.medium.site(view.snapshot, node) == Site::Leak {
+            let site = self.medium.site(view.snapshot, node);
+            if site == Site::Leak {
                 found = Component::Leaks;
                 if stop_at_leak {
                     return found;
                 }
             }
+            let blocked = self.blocked(node, site, 0.0, view);
             let neighbours = Direction::ALL.map(|direction| self.medium.lattice().neighbour(node, direction));
-            let inside = neighbours
+            let mut inside = neighbours
                 .map(|neighbour| self.components[neighbour] == self.component || self.is_inside(neighbour, view));
+            if blocked != [false; 4] {
+                inside = std::array::from_fn(|direction| inside[direction] && !blocked[direction]);
+            }
             if inside == [true; 4] {
                 neighbours.into_iter().for_each(|neighbour| self.join(neighbour));
                 continue;
@@ -241,6 +297,7 @@ impl<M: Medium> Follower<M> {
 
     fn flood_from(&mut self, start: NodeIndex) {
         self.component += 1;
+        (self.misled, self.may_touch) = (false, false);
         self.flood.clear();
         self.join(start);
     }
@@ -264,6 +321,12 @@ impl<M: Medium> Follower<M> {
         let lattice = self.medium.lattice();
         let ahead = lattice.neighbour(node, direction);
         let aside = lattice.neighbour(node, direction.right());
+        let between_walls = [ahead, aside].iter().all(|&node| self.medium.site(view.snapshot, node) == Site::Leak);
+        // Whether they meet in the middle the coarse lattice cannot tell.
+        self.may_touch |= between_walls;
+        if between_walls && !M::KEEPS_INPUTS {
+            return false;
+        }
         let mut corners = [node, ahead, aside, self.diagonal(node, direction)];
         // In one order, whichever corner asks: all must get the same answer to the last bit.
         corners.sort_unstable();
@@ -282,7 +345,7 @@ impl<M: Medium> Follower<M> {
         for &(node, direction) in &crossings {
             if self.followed[node] & (1 << direction.index()) == 0 {
                 self.walk((node, direction), view);
-                loops.push(self.refined(view));
+                loops.push(refined(&self.medium, &self.edges, &self.errors, view));
             }
         }
         self.crossings = crossings;
@@ -317,68 +380,4 @@ impl<M: Medium> Follower<M> {
             (node, right)
         }
     }
-
-    /// Where the contour crosses the collected edges: from the chord, one evaluation, then the parabola through three
-    /// points.
-    fn refined(&self, view: View<'_>) -> Vec<Point<f64>> {
-        let error = |point| {
-            let [x1, x2] = self.medium.world().inputs_at(view.snapshot, point);
-            view.model.error(x1, x2)
-        };
-        let mut points = Vec::with_capacity(self.edges.len());
-        for edges in self.edges.chunks(WIDTH) {
-            let filled = std::array::from_fn(|lane| edges[lane.min(edges.len() - 1)]);
-            let inner = filled.map(|edge| self.errors[edge.from]);
-            // A border node's error is minus infinity: the chord then is 0, the inner node itself.
-            let outer = filled.map(|edge| self.errors[edge.to]);
-            let chord = Lanes(std::array::from_fn(|lane| inner[lane] / (inner[lane] - outer[lane])));
-            let [x1, x2] = self.medium.inputs_along(view.snapshot, &filled, chord);
-            let middle = view.model.errors(x1, x2);
-            points.extend(edges.iter().enumerate().map(|(lane, &edge)| {
-                let t = if self.medium.is_creased(view.snapshot, edge) {
-                    root_between(inner[lane], outer[lane], |t| error(self.medium.along(edge, t)))
-                } else {
-                    parabola_root([0.0, chord.0[lane], 1.0], [inner[lane], middle.0[lane], outer[lane]])
-                };
-                self.medium.along(edge, t)
-            }));
-        }
-        let ring = thinned(points, self.medium.lattice().step() * CLOSEST_POINTS);
-        let errors = |points: &[Point<f64>; WIDTH]| {
-            let [x1, x2] = self.medium.world().inputs_at_all(view.snapshot, points);
-            view.model.errors(x1, x2)
-        };
-        with_corners(ring, |point| self.medium.world().is_at_crease(view.snapshot, point), errors)
-    }
-}
-
-/// The root in [0, 1] by inverse quadratic interpolation of three points whose values fall strictly through 0, else the
-/// middle point.
-fn parabola_root(t: [f64; 3], [a, b, c]: [f64; 3]) -> f64 {
-    if !(a > b && b > c && c.is_finite()) {
-        return t[1];
-    }
-    let root =
-        t[0] * b * c / ((a - b) * (a - c)) + t[1] * a * c / ((b - a) * (b - c)) + t[2] * a * b / ((c - a) * (c - b));
-    if (0.0..=1.0).contains(&root) { root } else { t[1] }
-}
-
-/// The root in [0, 1] of a function with the given values at 0 and 1, by false position with halving (Illinois).
-fn root_between(start: f64, end: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const STEPS: usize = 5;
-    if !end.is_finite() {
-        return 0.0;
-    }
-    let (mut a, mut b) = ((0.0, start), (1.0, end));
-    for _ in 0..STEPS {
-        let t = b.0 - b.1 * (b.0 - a.0) / (b.1 - a.1);
-        let value = f(t);
-        if (value < 0.0) == (b.1 < 0.0) {
-            a.1 *= 0.5;
-        } else {
-            a = b;
-        }
-        b = (t, value);
-    }
-    b.0
 }

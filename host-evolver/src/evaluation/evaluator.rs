@@ -11,11 +11,11 @@
 //! bounds are exact instead of statistical, so the winners and their values are those of whole evaluations, bit for bit.
 
 use super::constraints::Constraints;
-use super::contour::View;
 use super::error_table::ErrorTable;
 use super::fitness::{Evaluation, TargetDistance, WORST_F2, evaluate_snapshot};
 use super::model::Model;
 use super::tracer::{Tracer, error_table_of};
+use super::view::View;
 use super::world::{Snapshot, World};
 use crate::model::tree::Tree;
 

@@ -1,9 +1,11 @@
 //! What is known of the walls on the lattices: the same for every model, and for every snapshot with the same walls.
 
 use super::fine_lattice::{Run, no_runs};
+use super::hidden::{Beside, hidden_from};
 use super::lattice::{Direction, LATTICE_STEP, Lattice, NodeIndex, Site, is_crease};
 use firmware_sim::geometry::Walls;
 use grn_core::geometry::{Point, Vector};
+use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 /// Stands for "no wall near": every kernel is 0 there.
@@ -19,6 +21,10 @@ pub(super) struct Ground {
     pub creases: Vec<[bool; 2]>,
     /// What a pattern meets at each node.
     pub sites: Vec<Site>,
+    /// What the coarse lattice does not show of the walls.
+    hidden: BTreeMap<NodeIndex, Beside>,
+    /// Nearer to walls than this x2 changes too fast for the coarse lattice, metres; 0 if nowhere.
+    pub blurred: f64,
     /// What is known on the fine lattice so far.
     pub runs: Vec<OnceLock<Box<Run>>>,
     /// How many snapshots have these walls.
@@ -27,12 +33,15 @@ pub(super) struct Ground {
 
 impl Ground {
     /// Among these walls, which are there at so many snapshots.
-    pub fn new(walls: Walls, lattice: &Lattice, fine: &Lattice, snapshots: usize) -> Ground {
-        let (clearance, creases, sites) = (Vec::new(), Vec::new(), Vec::new());
-        let mut ground = Ground { walls, clearance, creases, sites, runs: no_runs(fine), snapshots };
+    pub fn new(walls: Walls, lattice: &Lattice, fine: &Lattice, snapshots: usize, blurred: f64) -> Ground {
+        let (clearance, creases, sites, hidden) = (Vec::new(), Vec::new(), Vec::new(), BTreeMap::new());
+        let mut ground = Ground { walls, clearance, creases, sites, hidden, blurred, runs: no_runs(fine), snapshots };
         ground.clearance = lattice.nodes().map(|node| ground.clearance_at(lattice.point(node))).collect();
         ground.creases = lattice.nodes().map(|node| ground.creases_from(lattice, node)).collect();
-        ground.sites = lattice.nodes().map(|node| Site::of(lattice, node, ground.clearance[node])).collect();
+        ground.hidden = hidden_from(&ground.walls, lattice, &ground.clearance);
+        let is_beside = |node| ground.clearance[node] < blurred || ground.hidden.contains_key(&node);
+        let site = |node| Site::of(lattice, node, ground.clearance[node], is_beside(node));
+        ground.sites = lattice.nodes().map(site).collect();
         ground
     }
 
@@ -44,6 +53,11 @@ impl Ground {
                 is_crease(self.clearance[node], self.clearance_at(point + half * LATTICE_STEP), end)
             },
         )
+    }
+
+    /// What the coarse lattice does not show beside a node.
+    pub fn beside(&self, node: NodeIndex) -> Option<&Beside> {
+        self.hidden.get(&node)
     }
 
     /// The walls.

@@ -28,6 +28,10 @@ impl Direction {
         self.0 as usize
     }
 
+    pub(super) const fn unit(self) -> Vector<f64> {
+        [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)][self.index()]
+    }
+
     /// A quarter turn clockwise.
     pub(super) const fn right(self) -> Direction {
         Direction((self.0 + 3) & 3)
@@ -56,6 +60,13 @@ impl Lattice {
         let count = |length: f64| ((length + 2.0 * MARGIN) / step).ceil() as usize + 1;
         let columns = count(region[0]).next_multiple_of(WIDTH);
         Lattice { origin: Vector::new(-MARGIN, -MARGIN), step, columns, rows: count(region[1]) }
+    }
+
+    /// So many nodes to each side of `centre`, which is in the middle of a cell; a few more along rows.
+    pub(super) fn around(centre: Point<f64>, step: f64, reach: usize) -> Lattice {
+        let (columns, rows) = ((2 * reach).next_multiple_of(WIDTH), 2 * reach);
+        let to_middle = |count: usize| (count as f64 - 1.0) / 2.0 * step;
+        Lattice { origin: centre - Vector::new(to_middle(columns), to_middle(rows)), step, columns, rows }
     }
 
     pub(super) fn nodes(&self) -> Range<NodeIndex> {
@@ -139,6 +150,8 @@ pub(super) struct Edge {
 pub(super) enum Site {
     /// Open space.
     Open,
+    /// Open space beside something of the walls that the lattice may not show.
+    Beside,
     /// A wall, or the last node before the border: a pattern that holds it leaks.
     Leak,
     /// The lattice's border: outside every pattern.
@@ -146,11 +159,12 @@ pub(super) enum Site {
 }
 
 impl Site {
-    pub(super) fn of(lattice: &Lattice, node: NodeIndex, clearance: f64) -> Site {
+    pub(super) fn of(lattice: &Lattice, node: NodeIndex, clearance: f64, is_beside: bool) -> Site {
         match lattice.depth(node) {
             0 => Site::Border,
             1 => Site::Leak,
             _ if clearance <= 0.0 => Site::Leak,
+            _ if is_beside => Site::Beside,
             _ => Site::Open,
         }
     }

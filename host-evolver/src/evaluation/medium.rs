@@ -1,6 +1,8 @@
 //! A lattice with the inputs of models at its nodes: stored for the coarse lattice, computed on demand for the fine one.
 
 use super::fine_lattice::{MOST_KEPT_SNAPSHOTS, Run};
+use super::ground::Ground;
+use super::hidden::stands_for_wall;
 use super::lanes::{Lanes, WIDTH};
 use super::lattice::{Edge, Lattice, NodeIndex, Site, is_crease};
 use super::world::{Snapshot, World};
@@ -44,6 +46,13 @@ pub(super) trait Medium {
     }
 }
 
+/// Whether an edge is creased, or x2 changes so fast along it that one evaluation does not find where the contour crosses it.
+pub(super) fn is_creased_or_blurred<M: Medium>(medium: &M, snapshot: &Snapshot, edge: Edge) -> bool {
+    let ends = [edge.from, edge.to].map(|node| medium.clearance(snapshot, node));
+    let middle = || snapshot.ground.clearance_at(medium.along(edge, 0.5));
+    ends[0].min(ends[1]) < snapshot.ground.blurred || is_crease(ends[0], middle(), ends[1])
+}
+
 /// The coarse lattice, with stored inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Kept<'w>(pub &'w World);
@@ -83,16 +92,28 @@ impl Computed<'_> {
     fn run<'s>(&self, snapshot: &'s Snapshot, node: NodeIndex) -> &'s Run {
         let ground = &*snapshot.ground;
         ground.runs[node / WIDTH].get_or_init(|| {
-            let first = node - node % WIDTH;
-            let clearance = self.lattice().run(first).map(|point| ground.clearance_at(point));
-            let site = |lane: usize| Site::of(self.lattice(), first + lane, clearance[lane]);
-            Box::new(Run {
-                clearance,
-                sites: std::array::from_fn(site),
-                x2: self.0.x2_at_all(ground, Lanes(clearance)),
-                x1: vec![OnceLock::new(); ground.snapshots.min(MOST_KEPT_SNAPSHOTS)],
-            })
+            let snapshots = ground.snapshots.min(MOST_KEPT_SNAPSHOTS);
+            Box::new(run(self.0, ground, self.lattice(), node - node % WIDTH, snapshots))
         })
+    }
+}
+
+/// What is known at eight nodes from `first` on of a lattice that is fine enough to be believed, where a node may stand for
+/// a wall that no node shows; with room for x1 at so many snapshots.
+pub(super) fn run(world: &World, ground: &Ground, lattice: &Lattice, first: NodeIndex, snapshots: usize) -> Run {
+    let points = lattice.run(first);
+    let clearance = points.map(|point| ground.clearance_at(point));
+    let is_wall: [bool; WIDTH] = std::array::from_fn(|lane| {
+        let is_near = clearance[lane] > 0.0 && clearance[lane] < lattice.step();
+        is_near && stands_for_wall(ground.walls(), lattice, points[lane])
+    });
+    let to_wall = std::array::from_fn(|lane| if is_wall[lane] { 0.0 } else { clearance[lane] });
+    Run {
+        clearance,
+        sites: std::array::from_fn(|lane| Site::of(lattice, first + lane, to_wall[lane], false)),
+        // Where x2 changes slowly it is left as it is beside the wall.
+        x2: world.x2_at_all(ground, Lanes(if ground.blurred > 0.0 { to_wall } else { clearance })),
+        x1: vec![OnceLock::new(); snapshots],
     }
 }
 
@@ -110,7 +131,8 @@ impl Medium for Computed<'_> {
         [run.x1.get(snapshot.nth).map_or_else(x1, |kept| *kept.get_or_init(x1)), run.x2]
     }
     fn inputs_at(&self, snapshot: &Snapshot, node: NodeIndex) -> [f64; 2] {
-        self.0.inputs_at(snapshot, self.lattice().point(node))
+        let [x1, _] = self.0.inputs_at(snapshot, self.lattice().point(node));
+        [x1, self.run(snapshot, node).x2.0[node % WIDTH]]
     }
     fn clearance(&self, snapshot: &Snapshot, node: NodeIndex) -> f64 {
         self.run(snapshot, node).clearance[node % WIDTH]
@@ -119,7 +141,6 @@ impl Medium for Computed<'_> {
         self.run(snapshot, node).sites[node % WIDTH]
     }
     fn is_creased(&self, snapshot: &Snapshot, edge: Edge) -> bool {
-        let middle = snapshot.ground.clearance_at(self.along(edge, 0.5));
-        is_crease(self.clearance(snapshot, edge.from), middle, self.clearance(snapshot, edge.to))
+        is_creased_or_blurred(self, snapshot, edge)
     }
 }

@@ -1,16 +1,23 @@
 //! From a model and a snapshot to the pattern (model page, section 3).
 
-use super::contour::{Component, Follower, View};
+use super::contour::{Component, DOUBT, Follower};
 use super::error_table::ErrorTable;
-use super::lattice::NodeIndex;
+use super::fine_lattice::FINE_STEP;
+use super::lattice::{LATTICE_STEP, NodeIndex};
 use super::medium::{Computed, Kept, Medium};
 use super::model::Model;
+use super::view::View;
+use super::window::Window;
 use super::world::{Snapshot, World};
+use firmware_sim::geometry::point_in_polygon;
 use grn_core::geometry::Point;
 
-/// Topology is in doubt if raising or lowering the level by this pattern error changes it: a necking or a gap that shallow
-/// can hide within one cell of the coarse lattice.
-const DOUBT: f64 = 0.02;
+/// Steps of lattices around a target next to which no node of the fine lattice is inside, metres. A pattern that does not show
+/// on the last one is smaller than a millimetre, and none.
+const CLOSE_UPS: [f64; 2] = [FINE_STEP / 16.0, FINE_STEP / 256.0];
+/// The step of the lattice around a target whose σ_t is below four of the fine lattice's, in σ_t: rings so small need
+/// more points than that has.
+const CLOSE_UP_STEP: f64 = 0.125;
 /// Where a leak is expected, this many nodes are searched for it before the component is flooded as if it were closed:
 /// enough to reach a wall on either lattice.
 const LOOKED_AT_FOR_LEAKS: usize = 200;
@@ -60,8 +67,17 @@ impl<'w> Tracer<'w> {
     /// speed: faster for patterns that leak, slower for others.
     pub(super) fn trace(&mut self, view: View<'_>, expects_leak: bool) -> Option<Contours> {
         let mut attempt = Attempt { outline_leaks: self.outline_leaks, expects_leak, ..Attempt::default() };
-        let doubtful = attempt.trace(&mut self.coarse, view);
-        (!doubtful).then(|| attempt.contours())
+        if !self.world.shows_targets(LATTICE_STEP) || attempt.trace(&mut self.coarse, view) {
+            return None;
+        }
+        let may_touch = attempt.may_touch;
+        let coarse = attempt.contours();
+        if !may_touch {
+            return Some(coarse);
+        }
+        let fine = self.trace_finely(view);
+        let same = fine.enclosed == coarse.enclosed && fine.rings.len() == coarse.rings.len();
+        Some(if same { coarse } else { fine })
     }
 
     /// The pattern at a snapshot on the fine lattice, which is believed.
@@ -88,6 +104,11 @@ enum Fate {
     Closed(u32),
 }
 
+impl Fate {
+    /// Closed in a component that no other target is in; those of a lattice count from 1.
+    const CLOSED_BY_ITSELF: Fate = Fate::Closed(0);
+}
+
 /// The pattern as one lattice shows it.
 #[derive(Default)]
 struct Attempt {
@@ -96,6 +117,8 @@ struct Attempt {
     expects_leak: bool,
     /// Whether this lattice is the fine one, which is believed.
     is_final: bool,
+    /// Whether some closed component may touch a wall unseen.
+    may_touch: bool,
     rings: Vec<Vec<Point<f64>>>,
     leaks: Vec<Vec<Point<f64>>>,
     fates: Vec<Fate>,
@@ -111,9 +134,16 @@ impl Attempt {
         let mut shared = false;
         for (&target, [x1, x2]) in view.snapshot.targets.iter().zip(&view.snapshot.target_inputs) {
             let held = view.model.error(*x1, *x2) >= 0.0;
+            if held && self.is_final && !follower.world().shows_targets(2.0 * FINE_STEP) {
+                let step = follower.world().scenario().morphogen().target_width * CLOSE_UP_STEP;
+                let fate = self.close_up(follower.world(), view, target, &[step]);
+                self.fates.push(fate);
+                continue;
+            }
             let start = if held { follower.start(target, 0.0, view) } else { None };
             let fate = match start.map(|start| (start, follower.component_of(start))) {
-                None if held && !self.is_final && follower.start(target, -DOUBT, view).is_some() => return true,
+                None if held && !self.is_final => return true,
+                None if held => self.close_up(follower.world(), view, target, &CLOSE_UPS),
                 None => Fate::Outside,
                 Some((start, known)) if !follower.is_current(known) => match self.explore(follower, start, view) {
                     Some(fate) => fate,
@@ -130,12 +160,35 @@ impl Attempt {
         !sure && !same_when_narrowed(follower, &self.fates, view)
     }
 
+    /// The fate of a target by itself, on small lattices of these steps around it: the first on which it has a pattern.
+    fn close_up(&mut self, world: &World, view: View<'_>, target: Point<f64>, steps: &[f64]) -> Fate {
+        if self.rings.iter().any(|ring| point_in_polygon(ring, target)) {
+            return Fate::CLOSED_BY_ITSELF;
+        }
+        for &step in steps {
+            let mut follower = Follower::new(Window::new(world, view.snapshot, target, step));
+            follower.begin();
+            if let Some(start) = follower.start(target, 0.0, view) {
+                let fate = self.explore(&mut follower, start, view);
+                return if fate == Some(Fate::Leaks) { Fate::Leaks } else { Fate::CLOSED_BY_ITSELF };
+            }
+        }
+        Fate::Outside
+    }
+
     /// The fate of the targets in the component of `start`, if that is not in doubt.
     fn explore<M: Medium>(&mut self, follower: &mut Follower<M>, start: NodeIndex, view: View<'_>) -> Option<Fate> {
-        if self.expects_leak && !self.outline_leaks && follower.finds_leak(start, 0.0, LOOKED_AT_FOR_LEAKS, view) {
+        let blurred = !self.is_final && view.snapshot.ground.blurred > 0.0;
+        if !blurred
+            && self.expects_leak
+            && !self.outline_leaks
+            && follower.finds_leak(start, 0.0, LOOKED_AT_FOR_LEAKS, view)
+        {
             return Some(Fate::Leaks);
         }
         match follower.label(start, !self.outline_leaks, view) {
+            // A leak that was found was found around all that is hidden; its outline was not.
+            Component::Leaks if blurred || (self.outline_leaks && follower.is_misled()) => None,
             Component::Leaks => {
                 if self.outline_leaks {
                     follower.follow(view, &mut self.leaks);
@@ -143,9 +196,10 @@ impl Attempt {
                 Some(Fate::Leaks)
             }
             Component::Closed => {
-                if !self.is_final && follower.widen(-DOUBT, view) == Component::Leaks {
+                if !self.is_final && (follower.widen(-DOUBT, view) == Component::Leaks || follower.is_misled()) {
                     return None;
                 }
+                self.may_touch |= !self.is_final && follower.may_touch();
                 follower.follow(view, &mut self.rings);
                 Some(Fate::Closed(follower.last_component()))
             }

@@ -8,8 +8,8 @@ use super::lanes::{Lanes, WIDTH, concentration};
 use super::lattice::{Direction, LATTICE_STEP, Lattice};
 use super::terms::Terms;
 use firmware_sim::geometry::Walls;
-use firmware_sim::scenario::Scenario;
-use grn_core::field::Field;
+use firmware_sim::scenario::{Morphogen, Scenario};
+use grn_core::field::{Field, Kernel};
 use grn_core::geometry::Point;
 use std::sync::Arc;
 
@@ -71,6 +71,7 @@ impl World {
             terms: Terms::of(scenario.ring()),
             scenario,
         };
+        let blurred = blurred(morphogen);
         // Moments with the same walls share what is known of these.
         let mut kinds: Vec<Walls> = Vec::new();
         let mut kind_of = |moment: &Moment| {
@@ -82,7 +83,7 @@ impl World {
         let kind_of: Vec<usize> = moments.iter().map(&mut kind_of).collect();
         let ground = |(kind, walls)| {
             let snapshots = kind_of.iter().filter(|&&other| other == kind).count();
-            let ground = Ground::new(walls, &world.coarse, &world.fine, snapshots);
+            let ground = Ground::new(walls, &world.coarse, &world.fine, snapshots, blurred);
             let x2: Vec<f64> = ground.clearance.iter().map(|&clearance| world.x2_at(&ground, clearance)).collect();
             (Arc::new(ground), x2)
         };
@@ -107,6 +108,11 @@ impl World {
             ground: Arc::clone(ground),
             targets,
         }
+    }
+
+    /// Whether lattices with nodes so many metres apart show how x1 changes around targets.
+    pub(super) fn shows_targets(&self, step: f64) -> bool {
+        self.scenario.morphogen().target_width >= SHOWN_STEPS * step
     }
 
     /// The scenario it was made from.
@@ -179,6 +185,20 @@ impl World {
         let surely_clear = self.coarse.beside(point).is_some_and(|node| clearance[node] - LATTICE_STEP > distance);
         !surely_clear && snapshot.ground.clearance_at(point) < distance
     }
+}
+
+/// A morphogen that is narrower than so many steps is not shown by a lattice.
+const SHOWN_STEPS: f64 = 2.0;
+
+/// Nearer to walls than this the coarse lattice does not show x2, metres; 0 if it does everywhere.
+fn blurred(morphogen: Morphogen) -> f64 {
+    let reach = match morphogen.kernel {
+        Kernel::Gaussian => 3.5,
+        Kernel::Exponential => 6.0,
+    };
+    // Beyond this reach x2 is below 0.003.
+    let width = morphogen.obstacle_width;
+    if width < SHOWN_STEPS * LATTICE_STEP { reach * width + LATTICE_STEP } else { 0.0 }
 }
 
 impl Snapshot {

@@ -5,6 +5,7 @@ mod c_install;
 mod c_package;
 mod mpi;
 mod python;
+mod slurm;
 mod tally;
 mod target;
 
@@ -30,6 +31,7 @@ const HELP: &str = "cargo xtask TASK
   crosscheck [--seeds N] [--labs NAME…] [--models NAME…]
          drive the same robots in MuJoCo and in our simulator and write docs/crosscheck.md; goes on where it was stopped. A
          short form is a part of python
+  slurm  try the scripts of examples/slurm under a Slurm of our own, one node on this machine; needs root, and is no part of test
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
@@ -54,6 +56,11 @@ fn main() -> ExitCode {
         "mpi" => {
             let mut tally = Tally::default();
             let succeeded = mpi::check(&mut tally);
+            tally.close(succeeded)
+        }
+        "slurm" => {
+            let mut tally = Tally::default();
+            let succeeded = slurm::check(&mut tally);
             tally.close(succeeded)
         }
         "python" => {

@@ -115,18 +115,18 @@ fn lead(arguments: &Arguments, mut leader: Option<Leader>) -> Result<Answer, Fai
     }
 }
 
-/// Makes units for the leader. It has the folder and says all there is to say.
+/// Makes units for the leader. It has the folder and says all there is to say, also why this process cannot take part.
 fn help(arguments: &Arguments, follower: &Follower) -> Result<Answer, Failure> {
-    let stop = interrupt::watch()?;
-    let planned = planned(arguments);
-    let identity = match &planned {
-        Ok(plan) => Ok(plan.identity()),
+    let ready = || -> Result<_, Failure> {
+        let pool = options::pool(arguments.threads.or(NonZeroUsize::new(follower.threads())))?;
+        Ok((interrupt::watch()?, pool, planned(arguments)?))
+    };
+    let ready = ready();
+    let identity = match &ready {
+        Ok((.., plan)) => Ok(plan.identity()),
         Err(failure) => Err(failure.message().unwrap_or_default().to_owned()),
     };
-    if follower.join(identity)?
-        && let Ok(plan) = planned
-    {
-        let pool = options::pool(arguments.threads.or(NonZeroUsize::new(follower.threads())))?;
+    if let (true, Ok((stop, pool, plan))) = (follower.join(identity)?, ready) {
         follow(follower, &pool, &Maker::new(&plan), &stop, &arguments.file)?;
     }
     Ok(Answer::Yes)

@@ -5,6 +5,7 @@
 //! the same: they are made from the files of the units alone.
 
 mod figures;
+mod job;
 mod listener;
 mod manifest;
 mod method;
@@ -15,19 +16,18 @@ mod rows;
 mod simulate;
 mod simulated;
 mod tables;
-mod task;
 mod team;
 mod trial;
 mod unit;
 mod vary;
 
+pub use job::{Job, Maker, Product, Refusal};
 pub use listener::Listener;
 pub use method::{Method, Outcome};
 pub use plan::{Place, Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
 pub use rows::{Comparison, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
 pub use simulate::Simulate;
 pub use tables::Tables;
-pub use task::{Maker, Product, Refusal, Task};
 pub use team::{Team, follow};
 pub use trial::Trial;
 pub use unit::{Found, Unit};
@@ -41,7 +41,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use team::{Site, Tasks};
+use team::{Batch, Site};
 use trial::Trials;
 
 /// One of several parts of a campaign, for several machines: part 2 of 3 does runs 2, 5, 8, ….
@@ -234,12 +234,12 @@ impl Campaign {
         // Long runs first, so that no thread is left alone with one at the end.
         missing.sort_by_key(|&unit| std::cmp::Reverse(worth(unit)));
         let done = AtomicUsize::new(found.iter().filter(|&found| *found == Found::Whole).count());
-        let tasks = Tasks { count: missing.len(), task: &|number| Task::Run(missing[number]) };
-        team.make(site, &tasks, &|number, product| {
+        let batch = Batch { count: missing.len(), job: &|number| Job::Run(missing[number]) };
+        team.make(site, &batch, &|number, product| {
             let unit = missing[number];
             let contents = match product {
                 Ok(Product::Run(contents)) => Ok(contents),
-                Ok(_) => Err(Refusal::internal("is made by another sort of task")),
+                Ok(_) => Err(Refusal::internal("is made by another sort of job")),
                 Err(refusal) => Err(refusal),
             };
             let contents = contents.map_err(|refusal| refusal.about(&self.folder().join(unit.folder(&self.plan))))?;

@@ -1,7 +1,7 @@
 //! Sealed tables that a campaign makes from its runs: each is in its folder whole and unchanged, or it is made anew.
 
-use super::task::{Product, Refusal, Task};
-use super::team::{Site, Tasks, Team};
+use super::job::{Job, Product, Refusal};
+use super::team::{Batch, Site, Team};
 use crate::files::{self, FileError};
 use rayon::prelude::*;
 use serde::de::DeserializeOwned;
@@ -17,7 +17,7 @@ pub fn name(number: u64, origin: &str) -> String {
     format!("{number:03}-{}.csv", &files::sha256(origin)[..DIGITS])
 }
 
-/// A sealed table that one task makes.
+/// A sealed table that one job makes.
 pub trait Part: Sync {
     /// A line of it.
     type Record: DeserializeOwned + Send + Sync;
@@ -34,9 +34,9 @@ pub trait Part: Sync {
     fn worth(&self) -> u64;
 
     /// What has to be done for it.
-    fn task(&self) -> Task;
+    fn job(&self) -> Job;
 
-    /// The table as CSV; `None` if the product is of another sort of task.
+    /// The table as CSV; `None` if the product is of another sort of job.
     fn csv(&self, product: Product) -> Option<Vec<u8>>;
 }
 
@@ -63,10 +63,10 @@ pub fn complete<P: Part>(
     let records: Vec<OnceLock<Vec<P::Record>>> =
         found?.into_iter().map(|found| found.map_or_else(OnceLock::new, OnceLock::from)).collect();
     let missing: Vec<usize> = (0..parts.len()).filter(|&place| records[place].get().is_none()).collect();
-    let tasks = Tasks { count: missing.len(), task: &|number| parts[missing[number]].task() };
-    team.make(site, &tasks, &|number, product| {
+    let batch = Batch { count: missing.len(), job: &|number| parts[missing[number]].job() };
+    team.make(site, &batch, &|number, product| {
         let part = &parts[missing[number]];
-        let other = || Refusal::internal("is made by another sort of task");
+        let other = || Refusal::internal("is made by another sort of job");
         let csv = product.and_then(|product| part.csv(product).ok_or_else(other));
         let csv = csv.map_err(|refusal| refusal.about(&path(part)))?;
         // Each is handed over once.

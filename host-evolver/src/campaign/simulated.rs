@@ -1,9 +1,9 @@
 //! The knees of a campaign's runs in simulated laboratories.
 
+use super::job::{Job, Product};
 use super::part::{self, Part};
 use super::plan::{Plan, slug};
 use super::simulate::Simulate;
-use super::task::{Product, Task};
 use super::unit::Unit;
 use crate::files::{self, FileError, read_blob};
 use crate::realities::Reality;
@@ -64,8 +64,8 @@ impl Part for Knee<'_> {
         self.simulate.worth()
     }
 
-    fn task(&self) -> Task {
-        Task::Simulations { scenario: self.unit.scenario, knee: self.bytes.clone() }
+    fn job(&self) -> Job {
+        Job::Simulations { scenario: self.unit.scenario, knee: self.bytes.clone() }
     }
 
     fn csv(&self, product: Product) -> Option<Vec<u8>> {

@@ -1,7 +1,7 @@
-//! Who makes a campaign's tasks: the threads of this process, and those of others if it leads any.
+//! Who makes a campaign's jobs: the threads of this process, and those of others if it leads any.
 
+use super::job::{Job, Maker, Product, Refusal};
 use super::listener::Listener;
-use super::task::{Maker, Product, Refusal, Task};
 use crate::cluster::{Follower, Jobs, Leader};
 use crate::files::FileError;
 use rayon::ThreadPool;
@@ -15,11 +15,11 @@ pub struct Team {
     leader: Option<Leader>,
 }
 
-/// What goes with all tasks of a campaign.
+/// What goes with all jobs of a campaign.
 pub struct Site<'s> {
     /// The campaign's folder.
     pub folder: &'s Path,
-    /// Makes its tasks.
+    /// Makes its jobs.
     pub maker: &'s Maker<'s>,
     /// Whether it is to stop.
     pub stop: &'s AtomicBool,
@@ -27,18 +27,18 @@ pub struct Site<'s> {
     pub listener: &'s dyn Listener,
 }
 
-/// Tasks by their numbers, long ones best first.
-pub struct Tasks<'t> {
+/// Jobs by their numbers, long ones best first.
+pub struct Batch<'t> {
     /// How many there are.
     pub count: usize,
     /// One of them.
-    pub task: &'t (dyn Fn(usize) -> Task + Sync),
+    pub job: &'t (dyn Fn(usize) -> Job + Sync),
 }
 
-/// Takes what came of a task.
+/// Takes what came of a job.
 pub type Put<'t> = dyn Fn(usize, Result<Product, Refusal>) -> Result<(), FileError> + Sync + 't;
 
-/// A result on its way; nothing of a task that was stopped.
+/// A result on its way; nothing of a job that was stopped.
 type Made = Result<Option<Product>, Refusal>;
 
 impl Team {
@@ -52,21 +52,21 @@ impl Team {
         &self.pool
     }
 
-    /// Makes all tasks, in any order, and hands to `put` what comes of each. Those that `stop` has ended or kept from being begun are
+    /// Makes all jobs, in any order, and hands to `put` what comes of each. Those that `stop` has ended or kept from being begun are
     /// not handed over.
     ///
     /// # Errors
-    /// The first that `put` says; no further task is begun then.
-    pub fn make(&mut self, site: &Site<'_>, tasks: &Tasks<'_>, put: &Put<'_>) -> Result<(), FileError> {
+    /// The first that `put` says; no further job is begun then.
+    pub fn make(&mut self, site: &Site<'_>, batch: &Batch<'_>, put: &Put<'_>) -> Result<(), FileError> {
         let &Site { maker, stop, .. } = site;
         match &mut self.leader {
-            Some(leader) => lead(leader, &self.pool, site, tasks, put),
+            Some(leader) => lead(leader, &self.pool, site, batch, put),
             None => self.pool.install(|| {
-                (0..tasks.count).into_par_iter().with_max_len(1).try_for_each(|number| {
+                (0..batch.count).into_par_iter().with_max_len(1).try_for_each(|number| {
                     if stop.load(Ordering::Relaxed) {
                         return Ok(());
                     }
-                    let made = maker.make(&(tasks.task)(number), stop).transpose();
+                    let made = maker.make(&(batch.job)(number), stop).transpose();
                     made.map_or(Ok(()), |made| put(number, made))
                 })
             }),
@@ -79,7 +79,7 @@ fn lead(
     leader: &mut Leader,
     pool: &ThreadPool,
     site: &Site<'_>,
-    tasks: &Tasks<'_>,
+    batch: &Batch<'_>,
     put: &Put<'_>,
 ) -> Result<(), FileError> {
     let &Site { folder, maker, stop, .. } = site;
@@ -91,13 +91,13 @@ fn lead(
         outcome = std::mem::replace(&mut outcome, Ok(())).and(put);
         outcome.is_ok()
     };
-    let jobs = Jobs { count: tasks.count, job: &|number| written(&(tasks.task)(number)) };
-    let worked = leader.work(&jobs, pool, &|task: &[u8]| perform(maker, task, stop), stop, &mut done);
+    let jobs = Jobs { count: batch.count, job: &|number| written(&(batch.job)(number)) };
+    let worked = leader.work(&jobs, pool, &|job: &[u8]| perform(maker, job, stop), stop, &mut done);
     outcome?;
     worked.map_err(|error| FileError::internal(folder, error))
 }
 
-/// Makes tasks of the leader's for as long as it wants. Nothing is read from the campaign's folder, and nothing written.
+/// Makes jobs of the leader's for as long as it wants. Nothing is read from the campaign's folder, and nothing written.
 ///
 /// # Errors
 /// A leader that says what cannot be read, by the campaign's file.
@@ -108,14 +108,14 @@ pub fn follow(
     stop: &AtomicBool,
     file: &Path,
 ) -> Result<(), FileError> {
-    let served = follower.serve(pool, &|task: &[u8]| perform(maker, task, stop), stop);
+    let served = follower.serve(pool, &|job: &[u8]| perform(maker, job, stop), stop);
     served.map_err(|error| FileError::internal(file, error))
 }
 
-/// The bytes of a task become those of what was made.
-fn perform(maker: &Maker<'_>, task: &[u8], stop: &AtomicBool) -> Vec<u8> {
-    let task = postcard::from_bytes(task).map_err(Refusal::internal);
-    let made: Made = task.and_then(|task: Task| maker.make(&task, stop));
+/// The bytes of a job become those of what was made.
+fn perform(maker: &Maker<'_>, job: &[u8], stop: &AtomicBool) -> Vec<u8> {
+    let job = postcard::from_bytes(job).map_err(Refusal::internal);
+    let made: Made = job.and_then(|job: Job| maker.make(&job, stop));
     written(&made)
 }
 

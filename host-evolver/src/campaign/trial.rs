@@ -1,8 +1,8 @@
 //! Models in worlds that they were not evolved for.
 
+use super::job::{Job, Product};
 use super::part::{self, Part};
 use super::plan::{Place, Plan, PlannedModel, PlannedScenario, PlannedTransfer, slug};
-use super::task::{Product, Task};
 use super::unit::Unit;
 use crate::files::{self, FileError, read_blob};
 use firmware_sim::scenario::Scenario;
@@ -129,8 +129,8 @@ impl Part for Trials<'_> {
         self.candidates.len() as u64
     }
 
-    fn task(&self) -> Task {
-        Task::Trials {
+    fn job(&self) -> Job {
+        Job::Trials {
             world: self.place,
             models: self.candidates.iter().map(|candidate| candidate.bytes.clone()).collect(),
         }

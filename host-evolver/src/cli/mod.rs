@@ -155,8 +155,20 @@ mod tests {
 
     /// Options whose values are words, names or paths. Every other one takes numbers, which may have a minus sign: what is
     /// wrong with them is then told with their range, and not that there is no option `-1`.
-    const WORDS: [&str; 11] =
-        ["image", "lab", "merge", "motifs", "number", "objectives", "out", "programmer", "set", "target", "to"];
+    const WORDS: [&str; 12] = [
+        "constraints",
+        "image",
+        "lab",
+        "merge",
+        "motifs",
+        "number",
+        "objectives",
+        "out",
+        "programmer",
+        "set",
+        "target",
+        "to",
+    ];
 
     #[test]
     fn every_option_with_a_number_takes_a_minus_sign() {

@@ -80,7 +80,7 @@ const CORES: usize = 1024;
 fn share_of_cores(world: &SimpleCommunicator) -> usize {
     let machine = world.split_shared(world.rank());
     let mine = usable_cores();
-    let mut all = vec![0; CORES * machine.size() as usize];
+    let mut all = vec![0_u8; CORES * machine.size() as usize];
     machine.all_gather_into(&mine[..], &mut all[..]);
     let users = |core: usize| all.iter().skip(core).step_by(CORES).filter(|&&usable| usable == 1).count();
     let share: f64 = (0..CORES).filter(|&core| mine[core] == 1).map(|core| 1.0 / users(core) as f64).sum();

@@ -145,19 +145,17 @@ fn a_follower_that_sees_something_else_is_refused_by_name_and_all_may_go() {
         [(Ok("other".to_owned()), "has another grn"), (Err("x.toml: is missing".into()), "x.toml: is missing")]
     {
         thread::scope(|scope| {
-            let mut ranks = ranks(4);
-            let odd = Follower::new(Box::new(ranks.remove(2)));
-            let followers: Vec<Follower> = ranks.drain(1..).map(|rank| Follower::new(Box::new(rank))).collect();
-            let mut leader = Leader::new(Box::new(ranks.remove(0)));
-            let odd = scope.spawn(move || odd.join(theirs).unwrap());
-            let others: Vec<_> = followers
-                .into_iter()
-                .map(|other| scope.spawn(move || other.join(Ok("same".into())).unwrap()))
-                .collect();
+            let mut ranks = ranks(4).into_iter();
+            let mut leader = Leader::new(Box::new(ranks.next().unwrap()));
+            let joins = ranks.map(|rank| {
+                let identity = if rank.rank == 2 { theirs.clone() } else { Ok("same".into()) };
+                scope.spawn(move || Follower::new(Box::new(rank)).join(identity).unwrap())
+            });
+            let joins: Vec<_> = joins.collect();
             let refused = leader.gather("same").unwrap_err().to_string();
             assert!(refused.starts_with("rank 2 on machine 2: ") && refused.contains(words), "{refused}");
             drop(leader);
-            assert!(!odd.join().unwrap() && !others.into_iter().any(|other| other.join().unwrap()));
+            assert!(joins.into_iter().all(|join| !join.join().unwrap()), "somebody goes on");
         });
     }
 }
@@ -165,9 +163,9 @@ fn a_follower_that_sees_something_else_is_refused_by_name_and_all_may_go() {
 #[test]
 fn a_leader_that_gives_up_before_it_begins_lets_the_others_go() {
     let mut ranks = ranks(2);
-    let follower = Follower::new(Box::new(ranks.remove(1)));
+    let rank = ranks.remove(1);
     let waiting = thread::scope(|scope| {
-        let waiting = scope.spawn(move || follower.join(Ok("same".into())).unwrap());
+        let waiting = scope.spawn(move || Follower::new(Box::new(rank)).join(Ok("same".into())).unwrap());
         drop(Leader::new(Box::new(ranks.remove(0))));
         waiting.join().unwrap()
     });

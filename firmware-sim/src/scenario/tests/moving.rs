@@ -29,6 +29,38 @@ fn the_shipped_worlds_move_and_round_trip() {
 }
 
 #[test]
+fn the_adaptive_worlds_are_passable_at_every_moment() {
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/adaptive");
+    let mut moving = 0;
+    let mut seen: Vec<String> = Vec::new();
+    for file in std::fs::read_dir(shipped).unwrap() {
+        let path = file.unwrap().path();
+        let world = Scenario::load(&path).unwrap();
+        assert_eq!(path.file_stem().unwrap().to_str(), Some(world.name()));
+        assert_eq!(Scenario::parse(&world.to_toml()).unwrap(), world);
+        let target = &world.targets()[0];
+        let places: Vec<Point<f64>> = (0..=200).map(|step| target.path.at(f64::from(step) / 200.0)).collect();
+        let mut clearance = f64::INFINITY;
+        for moment in 0..=400 {
+            let walls = world.walls_at(f64::from(moment) / 400.0);
+            clearance = places.iter().map(|&place| walls.signed_distance(place)).fold(clearance, f64::min);
+        }
+        let stated = match world.name() {
+            "tight" => 1.2,
+            "corner" => 0.8 * core::f64::consts::FRAC_1_SQRT_2,
+            _ => 0.8,
+        };
+        assert!((clearance - stated).abs() < 1e-3, "{}: {clearance}", world.name());
+        for wall in world.moving_walls() {
+            assert!(wall.length_at_full_speed() < target.path.length_at_full_speed(), "{}", world.name());
+            moving += 1;
+        }
+        seen.push(world.name().to_owned());
+    }
+    assert_eq!((seen.len(), moving), (9, 4), "{seen:?}");
+}
+
+#[test]
 fn targets_stop_wait_and_vanish() {
     let open = Scenario::parse(OPEN).unwrap();
     let path = open.targets()[0].path().points().to_vec();

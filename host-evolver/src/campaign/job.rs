@@ -1,10 +1,10 @@
-//! What a campaign computes, apart from where: a task goes to whoever makes it, and its product comes back.
+//! What a campaign computes, apart from where: a job goes to whoever makes it, and its product comes back.
 
 use super::method::Outcome;
 use super::plan::{Place, Plan};
 use super::unit::Unit;
 use crate::evaluation::{Evaluation, Evaluator, Model, World};
-use crate::evolve::FrontMember;
+use crate::evolve::{FrontMember, Task};
 use crate::files::{self, Contents, FileError};
 use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::realities;
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is to be made, with all that it depends on besides the plan.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub enum Task {
+pub enum Job {
     /// A run.
     Run(Unit),
     /// Models, given as blobs, tried in a world.
@@ -38,7 +38,7 @@ pub enum Task {
     },
 }
 
-/// What a task leaves.
+/// What a job leaves.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Product {
     /// The files of a run, without its manifest.
@@ -49,7 +49,7 @@ pub enum Product {
     Simulations(Vec<u8>),
 }
 
-/// Why a task cannot be made. What it is about is known to who wants it.
+/// Why a job cannot be made. What it is about is known to who wants it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Refusal {
     fault: String,
@@ -65,7 +65,7 @@ impl Refusal {
         }
     }
 
-    /// A product of another task than was asked for, or the like.
+    /// A product of another job than was asked for, or the like.
     pub fn internal(fault: impl std::fmt::Display) -> Refusal {
         Refusal { fault: fault.to_string(), is_internal: true }
     }
@@ -77,28 +77,28 @@ impl From<FileError> for Refusal {
     }
 }
 
-/// Makes a plan's tasks, on the threads of the pool that it is called in.
+/// Makes a plan's jobs, on the threads of the pool that it is called in.
 pub struct Maker<'p> {
     plan: &'p Plan,
-    /// Those of scenarios, which many runs share.
-    worlds: Vec<OnceLock<World>>,
+    /// What runs in each scenario are for; many runs share one.
+    tasks: Vec<OnceLock<Task>>,
 }
 
 impl<'p> Maker<'p> {
-    /// Makes tasks of this plan.
+    /// Makes jobs of this plan.
     pub fn new(plan: &'p Plan) -> Maker<'p> {
-        Maker { plan, worlds: plan.scenarios.iter().map(|_| OnceLock::new()).collect() }
+        Maker { plan, tasks: plan.scenarios.iter().map(|_| OnceLock::new()).collect() }
     }
 
-    /// Makes a task; `None` if `stop` was set. The product depends on plan and task only.
+    /// Makes a job; `None` if `stop` was set. The product depends on plan and job only.
     ///
     /// # Errors
     /// Why it cannot be made.
-    pub fn make(&self, task: &Task, stop: &AtomicBool) -> Result<Option<Product>, Refusal> {
-        match task {
-            &Task::Run(unit) => Ok(self.run(unit, stop)?.map(Product::Run)),
-            Task::Trials { world, models } => Ok(trials(self.plan.world(*world), models, stop)?.map(Product::Trials)),
-            Task::Simulations { scenario, knee } => {
+    pub fn make(&self, job: &Job, stop: &AtomicBool) -> Result<Option<Product>, Refusal> {
+        match job {
+            &Job::Run(unit) => Ok(self.run(unit, stop)?.map(Product::Run)),
+            Job::Trials { world, models } => Ok(trials(self.plan.world(*world), models, stop)?.map(Product::Trials)),
+            Job::Simulations { scenario, knee } => {
                 let scenario = &self.plan.scenarios[*scenario].scenario;
                 Ok(self.simulations(scenario, knee, stop)?.map(Product::Simulations))
             }
@@ -107,9 +107,9 @@ impl<'p> Maker<'p> {
 
     fn run(&self, unit: Unit, stop: &AtomicBool) -> Result<Option<Contents>, FileError> {
         let planned = &self.plan.scenarios[unit.scenario];
-        let world = self.worlds[unit.scenario].get_or_init(|| World::new(planned.scenario.clone()));
+        let task = self.tasks[unit.scenario].get_or_init(|| self.plan.task(unit.scenario));
         let method = &self.plan.methods[unit.method].method;
-        let Some(Outcome { front, history }) = method.run(world, planned.evaluations, unit.seed, stop) else {
+        let Some(Outcome { front, history }) = method.run(task, planned.evaluations, unit.seed, stop) else {
             return Ok(None);
         };
         let morphogen = planned.scenario.morphogen();

@@ -112,6 +112,18 @@ fn wait_until_free(folder: &Path) -> std::io::Result<()> {
     Err(std::io::Error::other("somebody still writes the folder"))
 }
 
+/// Waits until so many runs are in a folder: the campaign is then under way, however slow the machine is.
+fn wait_for_runs(folder: &Path, wanted: usize) -> std::io::Result<()> {
+    for _ in 0..1200 {
+        let manifests = content(&folder.join("runs")).unwrap_or_default();
+        if manifests.iter().filter(|(path, _)| path.ends_with("manifest.json")).count() >= wanted {
+            return Ok(());
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    Err(std::io::Error::other(format!("{wanted} runs do not come")))
+}
+
 #[test]
 fn a_stop_ends_all_ranks_in_order_and_what_was_done_is_kept() -> Outcome {
     let desk = Desk::new()?;
@@ -119,9 +131,9 @@ fn a_stop_ends_all_ranks_in_order_and_what_was_done_is_kept() -> Outcome {
     let expected = alone(&desk, &file)?;
     let out = desk.path("stopped");
     // What mpirun passes on, and what a scheduler sends to each rank: here to one that does not lead.
-    for to_mpirun in [true, false] {
+    for (to_mpirun, runs) in [(true, 1), (false, 2)] {
         let child = campaign(3, &file, &out).spawn()?;
-        std::thread::sleep(Duration::from_millis(1200));
+        wait_for_runs(&out, runs)?;
         match ranks_of(&child)?.last() {
             Some(&last) if !to_mpirun => signal("TERM", last)?,
             _ => signal("USR1", child.id())?,
@@ -133,7 +145,7 @@ fn a_stop_ends_all_ranks_in_order_and_what_was_done_is_kept() -> Outcome {
     }
     // Ctrl-C: mpirun ends the ranks and says 1 itself.
     let child = campaign(3, &file, &out).spawn()?;
-    std::thread::sleep(Duration::from_millis(900));
+    wait_for_runs(&out, 3)?;
     signal("INT", child.id())?;
     assert!(!child.wait_with_output()?.status.success());
     wait_until_free(&out)?;

@@ -5,6 +5,7 @@
 
 pub mod campaign;
 pub mod cli;
+pub mod cluster;
 #[cfg(unix)]
 pub mod emulation;
 pub mod evaluation;

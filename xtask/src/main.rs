@@ -3,7 +3,9 @@
 mod c_examples;
 mod c_install;
 mod c_package;
+mod mpi;
 mod python;
+mod slurm;
 mod tally;
 mod target;
 
@@ -23,11 +25,13 @@ const HELP: &str = "cargo xtask TASK
          header, the examples' expected output and the library's golden costs anew
   c-install PREFIX
          build the C library and install it under PREFIX: header, static and shared library, pkg-config file, CMake package
+  mpi    build the command with MPI and try campaigns of up to 4 ranks on this machine; a part of test
   python build the Python package and run its tests and examples, in an environment of its own in target/python; a part of
          test
   crosscheck [--seeds N] [--labs NAME…] [--models NAME…]
          drive the same robots in MuJoCo and in our simulator and write docs/crosscheck.md; goes on where it was stopped. A
          short form is a part of python
+  slurm  try the scripts of examples/slurm under a Slurm of our own, one node on this machine; needs root, and is no part of test
   bench  run the benchmarks (criterion); figures on standard output
   bless  write the golden files anew: models/*.grn, tests/golden/digest.txt (look at the difference before you commit)
   reproduce
@@ -49,6 +53,16 @@ fn main() -> ExitCode {
             tally.close(succeeded)
         }
         "c-install" => c_install(),
+        "mpi" => {
+            let mut tally = Tally::default();
+            let succeeded = mpi::check(&mut tally);
+            tally.close(succeeded)
+        }
+        "slurm" => {
+            let mut tally = Tally::default();
+            let succeeded = slurm::check(&mut tally);
+            tally.close(succeeded)
+        }
         "python" => {
             let mut tally = Tally::default();
             let succeeded = python::check(&mut tally);
@@ -105,6 +119,7 @@ fn test() -> bool {
         images(false, &mut tally),
         c_library(false, &mut tally),
         python::check(&mut tally),
+        mpi::check(&mut tally),
         cargo(&["doc", "--workspace", "--no-deps", "--quiet"], &[("RUSTDOCFLAGS", "-D warnings")]),
     ];
     tally.close(succeeded.into_iter().all(|success| success))

@@ -5,6 +5,8 @@
 //! the same: they are made from the files of the units alone.
 
 mod figures;
+mod job;
+mod listener;
 mod manifest;
 mod method;
 mod part;
@@ -14,31 +16,33 @@ mod rows;
 mod simulate;
 mod simulated;
 mod tables;
+mod team;
 mod trial;
 mod unit;
 mod vary;
 
+pub use job::{Job, Maker, Product, Refusal};
+pub use listener::Listener;
 pub use method::{Method, Outcome};
-pub use plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
+pub use plan::{Place, Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer};
 pub use rows::{Comparison, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
 pub use simulate::Simulate;
 pub use tables::Tables;
+pub use team::{Team, follow};
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 
-use crate::evolve::Task;
 use crate::files::{self, FileError, FolderLock};
-use crate::realities::Reality;
 use manifest::{BELOW, Manifest};
+use part::Part;
 use plan::slug;
-use rayon::prelude::*;
 use simulated::Knee;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
-use trial::Group;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use team::{Batch, Site};
+use trial::Trials;
 
 /// One of several parts of a campaign, for several machines: part 2 of 3 does runs 2, 5, 8, ….
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,22 +97,11 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Hears how a campaign goes.
-pub trait Listener: Sync {
-    /// A unit was there already; it is worth this many evaluations of f2.
-    fn found(&self, evaluations: u64);
-    /// A unit is done; it cost this many evaluations of f2.
-    fn done(&self, evaluations: u64);
-    /// Something that the user should know.
-    fn notice(&self, text: &str);
-}
-
 /// A plan and the folder where its units are collected.
 pub struct Campaign {
     plan: Plan,
     lock: FolderLock,
     manifest: Manifest,
-    tasks: Vec<OnceLock<Task>>,
 }
 
 impl Campaign {
@@ -121,8 +114,7 @@ impl Campaign {
         let manifest = Manifest::begin(&plan, folder)?;
         files::remove_unfinished(&lock, &BELOW)?;
         files::probe_folder(&lock, &paths(&plan))?;
-        let tasks = plan.scenarios.iter().map(|_| OnceLock::new()).collect();
-        Ok(Campaign { plan, lock, manifest, tasks })
+        Ok(Campaign { plan, lock, manifest })
     }
 
     fn folder(&self) -> &Path {
@@ -142,7 +134,7 @@ impl Campaign {
         let models = self.plan.models.len() as u64;
         let trials: u64 = self.plan.transfers.iter().map(|t| t.worlds.len() as u64 * (models + knees(&t.from))).sum();
         let knees = Unit::all(&self.plan).len() as u64;
-        let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| knees * worth(simulate));
+        let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| knees * simulate.worth());
         runs as u64 + trials + models * self.plan.scenarios.len() as u64 + simulations
     }
 
@@ -186,46 +178,77 @@ impl Campaign {
         Ok(taken)
     }
 
-    /// Does what is missing on the current thread pool: the runs of `shard`, then, if all runs are there, trials and
-    /// tables. Once `stop` is set it ends soon, and units under way are dropped.
+    /// Has what is missing made by `team`: the runs of `shard`, then, if all runs are there, trials, simulations and tables. Once
+    /// `stop` is set it ends soon, and units under way are dropped.
     ///
     /// # Errors
     /// A unit that was made from something else, or a file that cannot be read or written.
-    pub fn run(&self, shard: Shard, stop: &AtomicBool, listener: &dyn Listener) -> Result<Stage, FileError> {
-        let units = Unit::all(&self.plan);
+    pub fn run(
+        &self,
+        shard: Shard,
+        team: &mut Team,
+        stop: &AtomicBool,
+        listener: &dyn Listener,
+    ) -> Result<Stage, FileError> {
+        let maker = Maker::new(&self.plan);
+        let site = Site { folder: self.folder(), maker: &maker, stop, listener };
         for name in self.runs_of_others()? {
             listener.notice(&format!("{name}: of another state of the campaign: kept, and in no table"));
         }
-        // What is refused is refused before the first run.
-        let found: Vec<Found> =
-            units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
-        let mut mine: Vec<(Unit, Found)> = Vec::new();
-        for (place, (&unit, found)) in units.iter().zip(&found).enumerate() {
-            if shard.holds(place) {
-                mine.push((unit, found.clone()));
-            }
+        let of = Unit::all(&self.plan).len();
+        let done = self.runs(shard, &site, team)?;
+        if done < of {
+            return Ok(Stage::Runs { done, of });
         }
-        // Long runs first, so that no thread is left alone with one at the end.
-        mine.sort_by_key(|(unit, _)| std::cmp::Reverse(self.plan.scenarios[unit.scenario].evaluations));
-        let done: Vec<bool> = mine
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|(unit, found)| self.run_unit(unit, &found, stop, listener))
-            .collect::<Result<_, _>>()?;
-        let of_others =
-            found.iter().enumerate().filter(|&(place, found)| !shard.holds(place) && *found == Found::Whole);
-        let done = done.into_iter().filter(|&done| done).count() + of_others.count();
-        if done < units.len() {
-            return Ok(Stage::Runs { done, of: units.len() });
-        }
-        let Some(trials) = self.trials(stop, listener)? else { return Ok(Stage::Trials) };
-        let Some(simulations) = self.simulations(stop, listener)? else { return Ok(Stage::Trials) };
-        let named = trials.iter().map(|(group, world, trials)| (group.as_str(), *world, trials.clone()));
-        let tables = Tables::of(&self.plan, self.folder(), named.collect(), &simulations)?;
+        let parts = Trials::all(&self.plan, self.folder())?;
+        let Some(trials) = part::complete(&parts, &site, team)? else { return Ok(Stage::Trials) };
+        let knees = Knee::all(&self.plan, self.folder())?;
+        let Some(realities) = part::complete(&knees, &site, team)? else { return Ok(Stage::Trials) };
+        let trials = parts.iter().zip(trials).map(|(part, trials)| (part.name, part.number, trials)).collect();
+        let simulations: Vec<_> = knees.iter().map(|knee| knee.unit).zip(realities).collect();
+        let tables = Tables::of(&self.plan, self.folder(), trials, &simulations)?;
         let mut contents = figures::draw(&self.plan, &tables, self.folder(), &|text| listener.notice(text))?;
         contents.extend(tables.contents());
         self.manifest.publish(self.folder(), &contents)?;
         Ok(Stage::Done(Box::new(tables)))
+    }
+
+    /// Has the missing runs of a shard made. Returns how many runs, of all shards, are there then.
+    fn runs(&self, shard: Shard, site: &Site<'_>, team: &mut Team) -> Result<usize, FileError> {
+        let units = Unit::all(&self.plan);
+        let worth = |unit: Unit| self.plan.scenarios[unit.scenario].evaluations as u64;
+        // What is refused is refused before the first run.
+        let found: Vec<Found> =
+            units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
+        let mut missing: Vec<Unit> = Vec::new();
+        for (_, (&unit, found)) in units.iter().zip(&found).enumerate().filter(|&(place, _)| shard.holds(place)) {
+            match found {
+                Found::Whole => site.listener.found(worth(unit)),
+                Found::Damaged(why) => site.listener.notice(&format!("{why}: this run is done again")),
+                Found::Nothing => {}
+            }
+            if *found != Found::Whole {
+                missing.push(unit);
+            }
+        }
+        // Long runs first, so that no thread is left alone with one at the end.
+        missing.sort_by_key(|&unit| std::cmp::Reverse(worth(unit)));
+        let done = AtomicUsize::new(found.iter().filter(|&found| *found == Found::Whole).count());
+        let batch = Batch { count: missing.len(), job: &|number| Job::Run(missing[number]) };
+        team.make(site, &batch, &|number, product| {
+            let unit = missing[number];
+            let contents = match product {
+                Ok(Product::Run(contents)) => Ok(contents),
+                Ok(_) => Err(Refusal::internal("is made by another sort of job")),
+                Err(refusal) => Err(refusal),
+            };
+            let contents = contents.map_err(|refusal| refusal.about(&self.folder().join(unit.folder(&self.plan))))?;
+            unit.put(&self.plan, self.folder(), contents)?;
+            done.fetch_add(1, Ordering::Relaxed);
+            site.listener.done(worth(unit));
+            Ok(())
+        })?;
+        Ok(done.into_inner())
     }
 
     /// Folders of runs of scenarios and methods that the campaign has no longer. They took long, so they are kept.
@@ -248,75 +271,6 @@ impl Campaign {
         Ok(others)
     }
 
-    /// The trials by group and world; `None` if stopped.
-    fn trials(&self, stop: &AtomicBool, listener: &dyn Listener) -> Result<Option<Vec<Tried>>, FileError> {
-        let groups = Group::all(&self.plan, self.folder())?;
-        let places = groups.iter().flat_map(|group| (0..group.worlds()).map(move |world| (group, world)));
-        let places: Vec<_> = places.collect();
-        let trials: Vec<Option<Tried>> = places
-            .par_iter()
-            .with_max_len(1)
-            .map(|(group, world)| {
-                let trials = group.trials(*world, self.folder(), stop, &|text| listener.notice(text))?;
-                listener.done(trials.as_ref().map_or(0, |trials| trials.len() as u64));
-                Ok(trials.map(|trials| (group.name.to_owned(), *world, trials)))
-            })
-            .collect::<Result<_, FileError>>()?;
-        let trials: Option<Vec<Tried>> = trials.into_iter().collect();
-        if trials.is_some() {
-            let wanted = places.iter().map(|(group, world)| group.path(*world)).collect();
-            part::remove_others(self.folder(), Path::new(trial::FOLDER), &wanted)?;
-        }
-        Ok(trials)
-    }
-
-    /// The realities of every run's knee, none if they are not to be simulated; `None` if stopped.
-    fn simulations(&self, stop: &AtomicBool, listener: &dyn Listener) -> Result<Option<Vec<Simulated>>, FileError> {
-        let knees = Knee::all(&self.plan, self.folder())?;
-        let simulated: Vec<Option<Simulated>> = knees
-            .par_iter()
-            .with_max_len(1)
-            .map(|knee| {
-                let realities = knee.realities(self.folder(), stop, &|text| listener.notice(text))?;
-                listener.done(self.plan.simulate.as_ref().map_or(0, worth));
-                Ok(realities.map(|realities| (knee.unit, realities)))
-            })
-            .collect::<Result<_, FileError>>()?;
-        let simulated: Option<Vec<Simulated>> = simulated.into_iter().collect();
-        if simulated.is_some() {
-            let wanted = knees.iter().map(Knee::path).collect();
-            part::remove_others(self.folder(), Path::new(simulated::FOLDER), &wanted)?;
-        }
-        Ok(simulated)
-    }
-
-    /// Returns whether the run is there, and not stopped.
-    fn run_unit(
-        &self,
-        unit: Unit,
-        found: &Found,
-        stop: &AtomicBool,
-        listener: &dyn Listener,
-    ) -> Result<bool, FileError> {
-        let worth = self.plan.scenarios[unit.scenario].evaluations as u64;
-        if *found == Found::Whole {
-            listener.found(worth);
-        } else {
-            if stop.load(Ordering::Relaxed) {
-                return Ok(false);
-            }
-            if let Found::Damaged(why) = found {
-                listener.notice(&format!("{why}: this run is done again"));
-            }
-            let task = self.tasks[unit.scenario].get_or_init(|| self.plan.task(unit.scenario));
-            if !unit.run(&self.plan, self.folder(), task, stop)? {
-                return Ok(false);
-            }
-            listener.done(worth);
-        }
-        Ok(true)
-    }
-
     /// The tables of a campaign that is done, read back from its folder.
     ///
     /// # Errors
@@ -327,28 +281,16 @@ impl Campaign {
     }
 }
 
-/// A run and the realities of its knee.
-type Simulated = (Unit, Vec<Reality>);
-
-/// What the simulations of a knee are worth, in evaluations of f2: they take about as long.
-fn worth(simulate: &Simulate) -> u64 {
-    const OF_REALITY: u64 = 500;
-    simulate.realities * OF_REALITY
-}
-
-/// A group, the number of a world in it, and the trials made there.
-type Tried = (String, usize, Vec<Trial>);
-
 /// A path of each folder that a campaign fills.
 fn paths(plan: &Plan) -> Vec<PathBuf> {
     let units = Unit::all(plan).into_iter().filter(|unit| unit.seed == plan.seeds);
     let runs = units.map(|unit| unit.folder(plan).join("00-31-nodes.grn"));
     let names = plan.transfers.iter().map(|planned| planned.name.as_str());
     let names = names.chain(plan.scenarios.iter().map(|planned| planned.scenario.name()));
-    let trials = names.map(|name| Path::new("trials").join(slug(name)).join("000-0123456789ab.csv"));
+    let trials = names.map(|name| Path::new(Trials::FOLDER).join(slug(name)).join("000-0123456789ab.csv"));
     let units = Unit::all(plan).into_iter().filter(|unit| plan.simulate.is_some() && unit.seed == plan.seeds);
     let simulations = units.map(|unit| {
-        let folder = Path::new(simulated::FOLDER).join(slug(plan.scenarios[unit.scenario].scenario.name()));
+        let folder = Path::new(Knee::FOLDER).join(slug(plan.scenarios[unit.scenario].scenario.name()));
         folder.join(slug(&plan.methods[unit.method].name)).join("000-0123456789ab.csv")
     });
     runs.chain(trials).chain(simulations).collect()

@@ -3,9 +3,13 @@
 use super::method::Method;
 use super::simulate::Simulate;
 use crate::evolve::Task;
+use crate::files;
+use firmware_sim::lab;
 use firmware_sim::scenario::Scenario;
-use grn_core::network::Network;
+use grn_core::blob::Blob;
 use grn_input::file_name;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
 
 /// A checked campaign, its files read.
 pub struct Plan {
@@ -57,8 +61,8 @@ pub struct PlannedMethod {
 pub struct PlannedModel {
     /// Its name in the tables.
     pub name: String,
-    /// Its network.
-    pub network: Network<f32>,
+    /// Its blob.
+    pub blob: Blob,
 }
 
 /// A transfer: worlds that nothing is evolved for.
@@ -71,6 +75,49 @@ pub struct PlannedTransfer {
     pub worlds: Vec<Scenario>,
     /// Whether it is a variation of another.
     pub varied: bool,
+}
+
+/// Where a world stands in a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Place {
+    /// That of a scenario.
+    Scenario(usize),
+    /// One of a transfer's.
+    Transfer(usize, usize),
+}
+
+impl Plan {
+    /// The world at a place of this plan.
+    pub fn world(&self, place: Place) -> &Scenario {
+        match place {
+            Place::Scenario(scenario) => &self.scenarios[scenario].scenario,
+            Place::Transfer(transfer, world) => &self.transfers[transfer].worlds[world],
+        }
+    }
+
+    /// A digest of this program and of everything in the plan that results depend on: processes that have the same make the same.
+    pub fn identity(&self) -> String {
+        let Plan { name, seeds, scenarios, methods, models, transfers, simulate } = self;
+        let mut text = format!("{}\n{name}\n{seeds}\n", files::VERSION);
+        // Writing to memory cannot fail.
+        for PlannedScenario { scenario, evaluations, varied } in scenarios {
+            let _ = writeln!(text, "{} {evaluations} {varied}", scenario.to_toml());
+        }
+        for PlannedMethod { name, baseline, method } in methods {
+            let _ = writeln!(text, "{name} {baseline} {}", files::json(method));
+        }
+        for PlannedModel { name, blob } in models {
+            let _ = writeln!(text, "{name} {blob:?}");
+        }
+        for PlannedTransfer { name, from, worlds, varied } in transfers {
+            let worlds: String = worlds.iter().map(Scenario::to_toml).collect();
+            let _ = writeln!(text, "{name} {from:?} {varied} {worlds}");
+        }
+        if let Some(Simulate { lab, realities, seed, scale, speed_m_per_s, number }) = simulate {
+            let _ = writeln!(text, "{realities} {seed} {scale} {speed_m_per_s} {number} {}", lab::write(lab));
+        }
+        files::sha256(text)
+    }
 }
 
 /// The folder of something with this name, within a campaign's: small letters and digits, the rest as single dashes, as a

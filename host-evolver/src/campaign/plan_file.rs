@@ -270,7 +270,7 @@ fn planned_model(place: usize, table: ModelTable, folder: &Path) -> Result<Plann
     let blob =
         blob.map_err(|error| InputError::new(&key, format!("{file:?}"), error.to_string()).from_source(error))?;
     Model::new(&blob.network, 0.5).map_err(|error| InputError::new(&key, format!("{file:?}"), error.to_string()))?;
-    Ok(PlannedModel { name, network: blob.network })
+    Ok(PlannedModel { name, blob })
 }
 
 fn planned_transfers(

@@ -55,6 +55,12 @@ impl Simulate {
         SwarmConfig { seed: self.seed, target_speed_m_per_s: self.speed_m_per_s, ..usual }
     }
 
+    /// What the simulations of a knee are worth, in evaluations of f2: they take about as long.
+    pub fn worth(&self) -> u64 {
+        const OF_REALITY: u64 = 500;
+        self.realities * OF_REALITY
+    }
+
     /// Whether a swarm can be set up and a run ends in each of these worlds.
     ///
     /// # Errors

@@ -1,19 +1,16 @@
 //! The knees of a campaign's runs in simulated laboratories.
 
-use super::part;
+use super::job::{Job, Product};
+use super::part::{self, Part};
 use super::plan::{Plan, slug};
 use super::simulate::Simulate;
 use super::unit::Unit;
 use crate::files::{self, FileError, read_blob};
-use crate::realities::{self, Reality};
-use crate::simulation::SimulationError;
+use crate::realities::Reality;
 use firmware_sim::lab;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-
-pub const FOLDER: &str = "simulations";
 
 /// A knee and where it is simulated.
 pub struct Knee<'p> {
@@ -22,6 +19,8 @@ pub struct Knee<'p> {
     scenario: &'p Scenario,
     simulate: &'p Simulate,
     blob: Blob,
+    /// The same as bytes.
+    bytes: Vec<u8>,
     folder: PathBuf,
 }
 
@@ -35,40 +34,25 @@ impl<'p> Knee<'p> {
         let knee = |unit: Unit| {
             let path = campaign.join(unit.folder(plan)).join("knee.grn");
             let blob = Blob { scale: simulate.scale, ..read_blob(&path)? };
-            files::blob_bytes(&blob).map_err(|error| FileError::new(&path, error))?;
+            let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(&path, error))?;
             let scenario = &plan.scenarios[unit.scenario].scenario;
             let method = slug(&plan.methods[unit.method].name);
-            let folder = Path::new(FOLDER).join(slug(scenario.name())).join(method);
-            Ok(Knee { unit, scenario, simulate, blob, folder })
+            let folder = Path::new(Self::FOLDER).join(slug(scenario.name())).join(method);
+            Ok(Knee { unit, scenario, simulate, blob, bytes, folder })
         };
         Unit::all(plan).into_iter().map(knee).collect()
     }
+}
 
-    /// The realities of the knee, none if it cannot drive a robot: read if they were simulated before and the file is whole,
-    /// else simulated; `notice` hears of damage. `None` if stopped.
-    ///
-    /// # Errors
-    /// A file that cannot be read or written, or a swarm that cannot be set up.
-    pub fn realities(
-        &self,
-        campaign: &Path,
-        stop: &AtomicBool,
-        notice: &dyn Fn(&str),
-    ) -> Result<Option<Vec<Reality>>, FileError> {
-        let path = campaign.join(self.path());
-        part::read_or_make(&path, &self.origin(), notice, || {
-            let &Knee { scenario, simulate, ref blob, .. } = self;
-            let numbers = 1..=simulate.realities;
-            match realities::try_all(blob, scenario, &simulate.config(), simulate.number, numbers, stop, &|| ()) {
-                Ok(robustness) => Ok(robustness.map(|robustness| files::csv_records(&robustness.realities))),
-                // Some runs find nothing that drives a robot: that is a result, too.
-                Err(SimulationError::Load(_) | SimulationError::NoPattern(_)) => Ok(Some(Vec::new())),
-                Err(error) => Err(FileError::new(&path, error)),
-            }
-        })
+/// The realities of a knee; none if it cannot drive a robot.
+impl Part for Knee<'_> {
+    type Record = Reality;
+    const FOLDER: &'static str = "simulations";
+
+    fn path(&self) -> PathBuf {
+        self.folder.join(part::name(self.unit.seed, &self.origin()))
     }
 
-    /// What the simulations are made from.
     fn origin(&self) -> String {
         let Simulate { lab, realities, seed, scale, speed_m_per_s, number } = self.simulate;
         let identity: String = self.blob.identity().iter().map(|byte| format!("{byte:02x}")).collect();
@@ -76,8 +60,18 @@ impl<'p> Knee<'p> {
         [run, self.scenario.to_toml(), lab::write(lab)].concat()
     }
 
-    /// Their file.
-    pub fn path(&self) -> PathBuf {
-        self.folder.join(part::name(self.unit.seed, &self.origin()))
+    fn worth(&self) -> u64 {
+        self.simulate.worth()
+    }
+
+    fn job(&self) -> Job {
+        Job::Simulations { scenario: self.unit.scenario, knee: self.bytes.clone() }
+    }
+
+    fn csv(&self, product: Product) -> Option<Vec<u8>> {
+        match product {
+            Product::Simulations(csv) => Some(csv),
+            _ => None,
+        }
     }
 }

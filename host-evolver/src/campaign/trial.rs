@@ -1,24 +1,24 @@
 //! Models in worlds that they were not evolved for.
 
-use super::part;
-use super::plan::{Plan, slug};
+use super::job::{Job, Product};
+use super::part::{self, Part};
+use super::plan::{Place, Plan, PlannedModel, PlannedScenario, PlannedTransfer, slug};
 use super::unit::Unit;
-use crate::evaluation::{Evaluation, Evaluator, Model, World};
 use crate::files::{self, FileError, read_blob};
 use firmware_sim::scenario::Scenario;
-use grn_core::network::Network;
+use grn_core::blob::Blob;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-
-pub const FOLDER: &str = "trials";
+use std::sync::Arc;
 
 /// A model that is tried, and where it comes from.
-pub struct Candidate {
+struct Candidate {
     scenario: String,
     method: String,
     seed: u64,
-    network: Network<f32>,
+    blob: Blob,
+    /// The same as bytes.
+    bytes: Vec<u8>,
 }
 
 /// What became of one model in one world: a line of a trial's file.
@@ -37,101 +37,112 @@ pub struct Trial {
 }
 
 /// A group of worlds and the models tried in them.
-pub struct Group<'p> {
-    /// Its name in the tables.
-    pub name: &'p str,
-    worlds: Vec<&'p Scenario>,
+struct Group<'p> {
+    name: &'p str,
+    worlds: Vec<(Place, &'p Scenario)>,
     candidates: Vec<Candidate>,
 }
 
-impl<'p> Group<'p> {
-    /// All groups of a plan: each transfer with the knees of its runs, and each scenario; given models in every one.
+/// All groups of a plan: each scenario, and each transfer with the knees of its runs; given models in every one.
+fn groups<'p>(plan: &'p Plan, campaign: &Path) -> Result<Vec<Group<'p>>, FileError> {
+    let scenario = |(place, planned): (usize, &'p PlannedScenario)| -> Result<Group<'p>, FileError> {
+        let worlds = vec![(Place::Scenario(place), &planned.scenario)];
+        Ok(Group { name: planned.scenario.name(), worlds, candidates: given(plan)? })
+    };
+    let transfer = |(place, transfer): (usize, &'p PlannedTransfer)| -> Result<Group<'p>, FileError> {
+        let mut candidates = given(plan)?;
+        for unit in Unit::all(plan) {
+            let from = plan.scenarios[unit.scenario].scenario.name();
+            if transfer.from.iter().any(|name| name == from) {
+                let path = campaign.join(unit.folder(plan)).join("knee.grn");
+                let method = plan.methods[unit.method].name.clone();
+                candidates.push(Candidate::new(from.to_owned(), method, unit.seed, read_blob(&path)?, &path)?);
+            }
+        }
+        let place = |world| Place::Transfer(place, world);
+        let worlds = transfer.worlds.iter().enumerate().map(|(number, world)| (place(number), world)).collect();
+        Ok(Group { name: &transfer.name, worlds, candidates })
+    };
+    let scenarios = plan.scenarios.iter().enumerate().map(scenario);
+    scenarios.chain(plan.transfers.iter().enumerate().map(transfer)).collect()
+}
+
+fn given(plan: &Plan) -> Result<Vec<Candidate>, FileError> {
+    let candidate = |model: &PlannedModel| {
+        Candidate::new(String::new(), model.name.clone(), 0, model.blob.clone(), Path::new(&model.name))
+    };
+    plan.models.iter().map(candidate).collect()
+}
+
+impl Candidate {
+    fn new(scenario: String, method: String, seed: u64, blob: Blob, path: &Path) -> Result<Candidate, FileError> {
+        let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(path, error))?;
+        Ok(Candidate { scenario, method, seed, blob, bytes })
+    }
+}
+
+/// The trials of a world: one line for each model that is tried there.
+pub struct Trials<'p> {
+    /// The group's name in the tables.
+    pub name: &'p str,
+    /// The number of the world in the group.
+    pub number: usize,
+    place: Place,
+    world: &'p Scenario,
+    candidates: Arc<Vec<Candidate>>,
+}
+
+impl<'p> Trials<'p> {
+    /// Those of all worlds of a plan in which any model is tried.
     ///
     /// # Errors
     /// A damaged run.
-    pub fn all(plan: &'p Plan, campaign: &Path) -> Result<Vec<Group<'p>>, FileError> {
-        let scenario = |planned: &'p super::plan::PlannedScenario| -> Result<Group<'p>, FileError> {
-            let worlds = vec![&planned.scenario];
-            Ok(Group { name: planned.scenario.name(), worlds, candidates: given(plan) })
+    pub fn all(plan: &'p Plan, campaign: &Path) -> Result<Vec<Trials<'p>>, FileError> {
+        let of_group = |Group { name, worlds, candidates }: Group<'p>| {
+            let candidates = Arc::new(candidates);
+            let worlds = worlds.into_iter().enumerate().filter(|_| !candidates.is_empty());
+            let of_world =
+                |(number, (place, world))| Trials { name, number, place, world, candidates: candidates.clone() };
+            worlds.map(of_world).collect::<Vec<_>>()
         };
-        let transfer = |transfer: &'p super::plan::PlannedTransfer| -> Result<Group<'p>, FileError> {
-            let mut candidates = given(plan);
-            for unit in Unit::all(plan) {
-                let from = plan.scenarios[unit.scenario].scenario.name();
-                if transfer.from.iter().any(|name| name == from) {
-                    candidates.push(Candidate {
-                        scenario: from.to_owned(),
-                        method: plan.methods[unit.method].name.clone(),
-                        seed: unit.seed,
-                        network: read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network,
-                    });
-                }
-            }
-            Ok(Group { name: &transfer.name, worlds: transfer.worlds.iter().collect(), candidates })
-        };
-        plan.scenarios.iter().map(scenario).chain(plan.transfers.iter().map(transfer)).collect()
+        Ok(groups(plan, campaign)?.into_iter().flat_map(of_group).collect())
+    }
+}
+
+impl Part for Trials<'_> {
+    type Record = Trial;
+    const FOLDER: &'static str = "trials";
+
+    fn path(&self) -> PathBuf {
+        Path::new(Self::FOLDER).join(slug(self.name)).join(part::name(self.number as u64, &self.origin()))
     }
 
-    /// How many worlds it has.
-    pub fn worlds(&self) -> usize {
-        if self.candidates.is_empty() { 0 } else { self.worlds.len() }
-    }
-
-    /// The trials of one world: read if they were made before and the file is whole, else made; `notice` hears of damage.
-    /// `None` if stopped.
-    ///
-    /// # Errors
-    /// A file that cannot be read or written.
-    pub fn trials(
-        &self,
-        world: usize,
-        campaign: &Path,
-        stop: &AtomicBool,
-        notice: &dyn Fn(&str),
-    ) -> Result<Option<Vec<Trial>>, FileError> {
-        let path = campaign.join(self.path(world));
-        part::read_or_make(&path, &self.origin(world), notice, || {
-            let lines = self.made(world, stop);
-            Ok(lines.map(|lines| files::csv(["scenario", "method", "seed", "f2", "violation"], lines)))
-        })
-    }
-
-    fn made(&self, world: usize, stop: &AtomicBool) -> Option<Vec<[String; 5]>> {
-        let world = World::new(self.worlds[world].clone());
-        let mut evaluator = Evaluator::new(&world);
-        let mut line = |candidate: &Candidate| {
-            if stop.load(Ordering::Relaxed) {
-                return None;
-            }
-            let model = Model::new(&candidate.network, world.scenario().morphogen().level).ok();
-            let Evaluation { f2, violation } = model.map_or(Evaluation::NO_PATTERN, |model| evaluator.evaluate(&model));
-            let Candidate { scenario, method, seed, .. } = candidate;
-            Some([scenario.clone(), method.clone(), seed.to_string(), f2.to_string(), violation.to_string()])
-        };
-        self.candidates.iter().map(&mut line).collect()
-    }
-
-    /// What the trials of a world are made from.
-    fn origin(&self, world: usize) -> String {
-        let mut text = self.worlds[world].to_toml();
-        for Candidate { scenario, method, seed, network } in &self.candidates {
-            text += &format!("{scenario}\n{method}\n{seed}\n{network:?}\n");
+    fn origin(&self) -> String {
+        let mut text = self.world.to_toml();
+        for Candidate { scenario, method, seed, blob, .. } in &*self.candidates {
+            text += &format!("{scenario}\n{method}\n{seed}\n{:?}\n", blob.network);
         }
         text
     }
 
-    /// The file of a world's trials.
-    pub fn path(&self, world: usize) -> PathBuf {
-        Path::new(FOLDER).join(slug(self.name)).join(part::name(world as u64, &self.origin(world)))
+    fn worth(&self) -> u64 {
+        self.candidates.len() as u64
     }
-}
 
-fn given(plan: &Plan) -> Vec<Candidate> {
-    let candidate = |model: &super::plan::PlannedModel| Candidate {
-        scenario: String::new(),
-        method: model.name.clone(),
-        seed: 0,
-        network: model.network.clone(),
-    };
-    plan.models.iter().map(candidate).collect()
+    fn job(&self) -> Job {
+        Job::Trials {
+            world: self.place,
+            models: self.candidates.iter().map(|candidate| candidate.bytes.clone()).collect(),
+        }
+    }
+
+    fn csv(&self, product: Product) -> Option<Vec<u8>> {
+        let Product::Trials(evaluations) = product else { return None };
+        let line = |(candidate, (f2, violation)): (&Candidate, (f64, f64))| {
+            let Candidate { scenario, method, seed, .. } = candidate;
+            [scenario.clone(), method.clone(), seed.to_string(), f2.to_string(), violation.to_string()]
+        };
+        let lines = self.candidates.iter().zip(evaluations).map(line);
+        Some(files::csv(["scenario", "method", "seed", "f2", "violation"], lines))
+    }
 }

@@ -1,16 +1,14 @@
 //! One run of one method in one scenario with one seed: the unit of work, whole in its folder or not there.
 
-use super::method::{Method, Outcome};
+use super::method::Method;
 use super::plan::{Plan, slug};
-use crate::evolve::{FrontMember, Milestone, Task};
+use crate::evolve::{FrontMember, Milestone};
 use crate::files::{self, Contents, FileError, Ledger};
-use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::results;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 const MANIFEST: &str = "manifest.json";
 
@@ -40,7 +38,7 @@ pub enum Found {
 }
 
 /// A run by its places in the plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Unit {
     /// Place of the scenario.
     pub scenario: usize,
@@ -112,23 +110,6 @@ impl Unit {
         }
     }
 
-    /// Runs it and puts its folder in place. Returns whether it was done, and not stopped.
-    ///
-    /// # Errors
-    /// What the operating system says.
-    pub fn run(self, plan: &Plan, campaign: &Path, task: &Task, stop: &AtomicBool) -> Result<bool, FileError> {
-        let planned = &plan.scenarios[self.scenario];
-        let method = &plan.methods[self.method].method;
-        let Some(Outcome { front, history }) = method.run(task, planned.evaluations, self.seed, stop) else {
-            return Ok(false);
-        };
-        let morphogen = planned.scenario.morphogen();
-        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
-        let (contents, _) = results::contents(&method.objectives(), &front, &history, blob_of, "")?;
-        self.put(plan, &campaign.join(self.folder(plan)), contents)?;
-        Ok(true)
-    }
-
     /// Takes the run over from another campaign's folder where it is whole.
     ///
     /// # Errors
@@ -142,11 +123,15 @@ impl Unit {
             let content = std::fs::read(&path).map_err(|error| FileError::from_system(path, "read", error))?;
             contents.insert(name.to_owned(), content);
         }
-        self.put(plan, &to.join(self.folder(plan)), contents)
+        self.put(plan, to, contents)
     }
 
-    /// Puts the files of a run in place, which is empty or holds a damaged run. The manifest comes last.
-    fn put(self, plan: &Plan, place: &Path, contents: Contents) -> Result<(), FileError> {
+    /// Puts the files of a run in place in a campaign's folder, where nothing is or a damaged run. The manifest comes last.
+    ///
+    /// # Errors
+    /// What the operating system says.
+    pub fn put(self, plan: &Plan, campaign: &Path, contents: Contents) -> Result<(), FileError> {
+        let place = &campaign.join(self.folder(plan));
         let manifest = Manifest { files: Ledger::of(&contents), ..self.manifest(plan) };
         if place.exists() {
             clear(place)?;

@@ -1,12 +1,14 @@
 //! `grn campaign`.
 
 use super::{Answer, Failure, conditions, interrupt, options, output, progress, robustness, this_command};
-use crate::campaign::{Campaign, Listener, Measure, Plan, Shard, Simulate, Stage, Tables};
+use crate::campaign::{Campaign, Listener, Maker, Measure, Plan, Shard, Simulate, Stage, Tables, Team, follow};
+use crate::cluster::{self, Follower, Leader, Role};
 use firmware_sim::lab;
 use grn_input::file_name;
 use indicatif::ProgressBar;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Where progress cannot be drawn it is told this often.
@@ -20,7 +22,8 @@ pub struct Arguments {
     /// not done again [default: runs/NAME].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Threads to work with, up to 8 a core; the results do not depend on it [default: all cores].
+    /// Threads to work with, of each rank if there are several, up to 8 a core; the results do not depend on it [default: all
+    /// cores, or a rank's share of its machine's].
     #[arg(long, value_parser = options::threads, allow_hyphen_values = true)]
     threads: Option<NonZeroUsize>,
     /// Do only the runs of one part of several, for instance 2/3.
@@ -58,11 +61,26 @@ impl Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    match cluster::join()? {
+        Role::Alone => lead(arguments, None),
+        Role::Leader(leader) => lead(arguments, Some(leader)),
+        Role::Follower(follower) => help(arguments, &follower),
+    }
+}
+
+/// Reads and checks the campaign, with what the command line says instead.
+fn planned(arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = Plan::load(&arguments.file)?;
     plan.simulate = arguments.simulate(plan.simulate.take())?;
     if let Some(simulate) = &plan.simulate {
         simulate.check(plan.scenarios.iter().map(|planned| &planned.scenario))?;
     }
+    Ok(plan)
+}
+
+/// Leads the campaign: alone, or with others that make its units, too.
+fn lead(arguments: &Arguments, mut leader: Option<Leader>) -> Result<Answer, Failure> {
+    let plan = planned(arguments)?;
     let folder = arguments.out.clone().unwrap_or_else(|| Path::new("runs").join(file_name(&plan.name)));
     let stop = interrupt::watch()?;
     arguments.merge.iter().try_for_each(|other| Campaign::check_merge(&plan, &folder, other))?;
@@ -72,10 +90,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         let taken = campaign.merge(other, &progress)?;
         progress.notice(&format!("{taken} runs taken over from {}", other.display()));
     }
-    let pool = options::pool(arguments.threads)?;
-    let stage = pool.install(|| campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &stop, &progress))?;
+    if let Some(leader) = &mut leader {
+        leader.gather(&campaign.plan().identity())?;
+    }
+    let share = leader.as_ref().and_then(|leader| NonZeroUsize::new(leader.threads()));
+    let mut team = Team::new(options::pool(arguments.threads.or(share))?, leader);
+    let stage = campaign.run(arguments.shard.unwrap_or(Shard::WHOLE), &mut team, &stop, &progress)?;
     progress.bar.finish_and_clear();
-    let stopped = stop.load(std::sync::atomic::Ordering::Relaxed);
+    let stopped = stop.load(Ordering::Relaxed);
     match stage {
         Stage::Done(tables) => {
             output::report(text(&tables));
@@ -91,6 +113,23 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
             Ok(Answer::Yes)
         }
     }
+}
+
+/// Makes units for the leader. It has the folder and says all there is to say, also why this process cannot take part.
+fn help(arguments: &Arguments, follower: &Follower) -> Result<Answer, Failure> {
+    let ready = || -> Result<_, Failure> {
+        let pool = options::pool(arguments.threads.or(NonZeroUsize::new(follower.threads())))?;
+        Ok((interrupt::watch()?, pool, planned(arguments)?))
+    };
+    let ready = ready();
+    let identity = match &ready {
+        Ok((.., plan)) => Ok(plan.identity()),
+        Err(failure) => Err(failure.message().unwrap_or_default().to_owned()),
+    };
+    if let (true, Ok((stop, pool, plan))) = (follower.join(identity)?, ready) {
+        follow(follower, &pool, &Maker::new(&plan), &stop, &arguments.file)?;
+    }
+    Ok(Answer::Yes)
 }
 
 struct Progress {

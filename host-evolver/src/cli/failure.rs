@@ -2,6 +2,7 @@
 
 use super::exit::Exit;
 use super::snippet;
+use crate::cluster::ClusterError;
 #[cfg(unix)]
 use crate::emulation::{EmulationError, StartError};
 use crate::evolve::SettingsError;
@@ -182,6 +183,16 @@ impl Blame for InputError {
 impl Blame for FileError {
     fn fault(&self) -> Fault {
         if self.is_internal() { Fault::Program } else { of_system_below(self, Fault::Input) }
+    }
+}
+
+impl Blame for ClusterError {
+    fn fault(&self) -> Fault {
+        match self {
+            ClusterError::NotBuilt { .. } | ClusterError::Unfit { .. } => Fault::Input,
+            ClusterError::NoStart => Fault::System,
+            ClusterError::Garbled { .. } => Fault::Program,
+        }
     }
 }
 

@@ -16,7 +16,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// How often it is looked whether a stop is asked for.
 const GLANCE: Duration = Duration::from_millis(200);
 
-/// From now on Ctrl-C, SIGTERM and a terminal that goes away (SIGHUP) set the flag that is returned.
+/// From now on Ctrl-C, SIGTERM, a terminal that goes away (SIGHUP), and SIGUSR1, which mpirun passes on to its ranks, set the flag
+/// that is returned.
 ///
 /// # Errors
 /// The system's, whatever it says.
@@ -30,6 +31,8 @@ fn watched() -> io::Result<Arc<AtomicBool>> {
         flag::register_conditional_shutdown(signal, Exit::Interrupted.code(), Arc::clone(&asked))?;
         flag::register(signal, Arc::clone(&asked))?;
     }
+    #[cfg(unix)]
+    flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&asked))?;
     #[cfg(unix)]
     if !is_ignored(signal_hook::consts::SIGHUP) {
         flag::register(signal_hook::consts::SIGHUP, Arc::clone(&asked))?;

@@ -25,7 +25,7 @@ const HELP: &str = "cargo xtask TASK
          header, the examples' expected output and the library's golden costs anew
   c-install PREFIX
          build the C library and install it under PREFIX: header, static and shared library, pkg-config file, CMake package
-  mpi    build the command with MPI and try campaigns of up to 4 ranks on this machine; a part of test
+  mpi    build the command with MPI and try campaigns of up to 4 ranks on this machine
   python build the Python package and run its tests and examples, in an environment of its own in target/python; a part of
          test
   crosscheck [--seeds N] [--labs NAME…] [--models NAME…]
@@ -119,7 +119,6 @@ fn test() -> bool {
         images(false, &mut tally),
         c_library(false, &mut tally),
         python::check(&mut tally),
-        mpi::check(&mut tally),
         cargo(&["doc", "--workspace", "--no-deps", "--quiet"], &[("RUSTDOCFLAGS", "-D warnings")]),
     ];
     tally.close(succeeded.into_iter().all(|success| success))

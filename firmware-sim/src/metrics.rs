@@ -17,7 +17,7 @@ use crate::geometry::{Walls, length_squared};
 use crate::scenario::{Course, Scenario, Scene};
 use crate::trace::{Frame, Observer, metres};
 pub use bearings::Bearings;
-pub use caging::{CONTACT_WEIGHT, Caging, CagingMeter};
+pub use caging::{CONTACT_WEIGHT, Caging, CagingMeter, WORST_COST};
 use clearance::Clearance;
 use core::f64::consts::{PI, TAU};
 pub use flood::{ESCAPE, GUARDED};

@@ -17,6 +17,9 @@ const FORMED_AFTER: u64 = 3;
 /// How much more a share of robots' time in contact costs than an equal share of time with a target not caged.
 pub const CONTACT_WEIGHT: f64 = 5.0;
 
+/// What a model costs that cannot even drive a robot: no target caged, all robots out of the band and always in contact.
+pub const WORST_COST: f64 = WORST_PEN + 1.0 + CONTACT_WEIGHT;
+
 /// What a run was worth by what the swarm is for. Shares are of the time after settling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Caging {
@@ -67,6 +70,8 @@ pub struct CagingMeter<'a> {
     /// Since when all targets are caged, in seconds, and for how many moments.
     caged_since: Option<(u64, u64)>,
     formed_at_s: Option<u64>,
+    /// How many robots there are, in service or not.
+    swarm: usize,
     targets: Vec<Point<f64>>,
     robots: Vec<Point<f64>>,
 }
@@ -86,6 +91,7 @@ impl<'a> CagingMeter<'a> {
             sums: Sums::default(),
             caged_since: None,
             formed_at_s: None,
+            swarm: 0,
             targets: Vec::new(),
             robots: Vec::new(),
         }
@@ -104,12 +110,11 @@ impl<'a> CagingMeter<'a> {
         }
     }
 
-    /// The cost that the whole run will have at least, whatever comes: what was bad so far stays bad.
+    /// The cost that the whole run will have at least, whatever comes: what was bad so far stays bad. Contacts are left out.
     pub fn least_cost(&self) -> f64 {
-        let Sums { moments, caged, robots, pen, .. } = self.sums;
-        let of_all = 1.0 / self.all_moments.max(1) as f64;
-        let mean_pen = if robots == 0 { 0.0 } else { pen / robots as f64 };
-        ((moments as f64 - caged) + mean_pen * moments as f64) * of_all
+        let Sums { moments, caged, pen, .. } = self.sums;
+        let pen_per_robot = pen / self.swarm.max(1) as f64;
+        ((moments as f64 - caged) + pen_per_robot) / self.all_moments.max(1) as f64
     }
 
     fn observe_moment(&mut self, second: u64, settling: bool) {
@@ -150,6 +155,7 @@ fn sigmoid(x: f64) -> f64 {
 
 impl Observer for CagingMeter<'_> {
     fn observe(&mut self, frame: &Frame<'_>) {
+        self.swarm = frame.robots.len();
         let contacts = frame.contacts;
         let touching = f64::from(contacts.walls + 2 * contacts.peers).min(frame.robots.len() as f64);
         if frame.tick > 0 {
@@ -173,5 +179,93 @@ impl Observer for CagingMeter<'_> {
         self.robots.extend(in_service.map(|(_, state)| metres(state.position_um)));
         self.scene.move_to(self.world, self.course.time_at(second as f64));
         self.observe_moment(second, (second as f64) < self.course.seconds_at(0.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contacts::ContactCounts;
+    use crate::trace::RobotState;
+    use core::f64::consts::TAU;
+
+    /// A target at (9, 9) that rests for 2 s, and then for 10 s more: it moves too little to matter.
+    const WORLD: &str = r#"
+name = "still"
+region = [18.0, 18.0]
+snapshots = 2
+duration_s = 10.0
+[morphogen]
+kernel = "gaussian"
+target_width = 1.5
+obstacle_width = 0.9
+level = 0.5
+[ring]
+d_min = 1.0
+d_max = 2.0
+d_obstacle = 2.0
+steepness = 10.0
+[[target]]
+path = [[9.0, 9.0], [9.001, 9.0]]
+"#;
+
+    const ROBOTS: usize = 12;
+    const ROUNDING: f64 = 1e-12;
+
+    /// Lets robots stand on a ring of this radius in each tick of 1/4 s, touching as `contacts` says; what that was worth, and the
+    /// least costs that were known on the way.
+    fn measured(absences: &Absences, radius: impl Fn(u64) -> f64, contacts: ContactCounts) -> (Caging, Vec<f64>) {
+        let world = Scenario::parse(WORLD).unwrap();
+        let mut meter = CagingMeter::new(&world, Course::new(2.0, 10.0), absences, 4);
+        let mut least = Vec::new();
+        for tick in 0..=48 {
+            let robot = |robot: usize| {
+                let (sin, cos) = libm::sincos(robot as f64 / ROBOTS as f64 * TAU);
+                let micrometres = |offset: f64| ((9.0 + radius(tick) * offset) * 1e6) as i32;
+                RobotState { position_um: [micrometres(cos), micrometres(sin)], ..RobotState::default() }
+            };
+            let robots: Vec<RobotState> = (0..ROBOTS).map(robot).collect();
+            let targets_um = &[Some([9_000_000, 9_000_000])];
+            meter.observe(&Frame { tick, targets_um, robots: &robots, off_duty: &[], contacts });
+            least.push(meter.least_cost());
+        }
+        (meter.caging(), least)
+    }
+
+    #[test]
+    fn a_ring_in_the_band_costs_hardly_anything() {
+        let (found, least) = measured(&Absences::default(), |_| 1.5, ContactCounts::default());
+        assert_eq!((found.caged_share, found.in_band_share, found.contact_share), (1.0, 1.0, 0.0));
+        assert_eq!(found.formed_at_s, Some(0.0));
+        let expected = 2.0 / (1.0 + libm::exp(5.0));
+        assert!((found.pen - expected).abs() < 1e-4 && (found.cost() - found.pen).abs() < 1e-12, "{found:?}");
+        assert!(least.windows(2).all(|pair| pair[0] <= pair[1]));
+        assert!(*least.last().unwrap() <= found.cost() + ROUNDING);
+    }
+
+    #[test]
+    fn what_is_bad_costs_as_much_as_it_lasts() {
+        // Too wide to cage anything until the targets have travelled for 4 s: at 6 of the 11 moments from 2 s on it is good.
+        let (late, least) =
+            measured(&Absences::default(), |tick| if tick < 28 { 3.0 } else { 1.5 }, ContactCounts::default());
+        assert_eq!((late.caged_share, late.in_band_share), (6.0 / 11.0, 6.0 / 11.0));
+        assert_eq!(late.formed_at_s, Some(7.0));
+        assert!((least[27] - (5.0 + 5.0) / 11.0).abs() < 0.01, "{} was sure by then", least[27]);
+        assert!(least.iter().all(|least| *least <= late.cost() + ROUNDING));
+        let touching = ContactCounts { walls: 1, peers: 1, ..ContactCounts::default() };
+        let (rubbing, _) = measured(&Absences::default(), |_| 1.5, touching);
+        assert!((rubbing.contact_share - 3.0 / 12.0).abs() < 1e-12, "one at a wall and two at each other");
+        assert!((rubbing.cost() - rubbing.pen - 5.0 * 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn who_is_out_of_service_holds_nothing_and_is_not_asked_where_it_is() {
+        let mut absences = Absences::default();
+        absences.add(3, 0..24);
+        absences.add(4, 0..24);
+        let (found, least) = measured(&absences, |_| 1.5, ContactCounts::default());
+        assert_eq!(found.caged_share, 7.0 / 11.0, "two neighbours are missing for the first 6 s");
+        assert_eq!(found.in_band_share, 1.0);
+        assert!(least.iter().all(|least| *least <= found.cost() + ROUNDING));
     }
 }

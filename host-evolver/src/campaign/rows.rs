@@ -1,5 +1,6 @@
 //! The lines of a campaign's tables, and what is measured of a run.
 
+use firmware_sim::metrics::WORST_COST;
 use serde::{Deserialize, Serialize};
 
 /// What an infeasible model counts as where f2 is compared: worse than every feasible one, by its violation.
@@ -22,9 +23,6 @@ pub enum Measure {
     /// Cost J of the knee on simulated swarms, mean over realities.
     Cost,
 }
-
-/// What a knee costs that cannot drive a robot: no target caged, and all robots out of the band and always in contact.
-const UNFIT: f64 = 7.0;
 
 impl Measure {
     /// All of them; the last is of campaigns that simulate knees.
@@ -64,7 +62,7 @@ impl Measure {
             Measure::KneeF2 => with_penalty(run.knee_f2, run.knee_violation),
             Measure::KneeNodes => run.knee_nodes as f64,
             Measure::Hypervolume => run.hypervolume,
-            Measure::Cost => run.cost.unwrap_or(UNFIT),
+            Measure::Cost => run.cost.unwrap_or(WORST_COST),
         }
     }
 

@@ -16,21 +16,20 @@ use crate::model::deploy;
 use crate::realities;
 use crate::simulation::{Setting, cost};
 use firmware_sim::config::SwarmConfig;
+use firmware_sim::metrics::WORST_COST;
 use grn_core::network::Network;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Trials that every feasible model has.
 const FIRST: usize = 2;
-/// What a model costs that cannot drive a robot: never caged, all robots out of the band and always in contact.
-const UNFIT: f64 = 7.0;
 /// The first reality of those that no search sees: the front is judged in them.
 const FRESH: u64 = 1_000_001;
 /// How long a tick is at least in the trials of the search, seconds.
 const DRAFT_TICK_S: f64 = 0.1;
 
-/// A trial as the search makes it: robots think every tenth of a second at most, which halves what it takes. J differs by less than
-/// 0.01 from that with ticks of 1/32 s, by which a front is judged in the end.
+/// A trial as the search makes it: robots think ten times a second at most, which halves what it takes. Where targets are caged, J
+/// differs by about 0.01 from that with ticks of 1/32 s, by which a front is judged in the end.
 fn draft(swarm: &SwarmConfig) -> SwarmConfig {
     let mut draft = swarm.clone();
     draft.lab.timing.tick_s = draft.lab.timing.tick_s.max(DRAFT_TICK_S);
@@ -45,7 +44,8 @@ pub(super) struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    /// Gives the feasible ones of `individuals` their first trials, and then those on the front of all more and more. A run that will cost more than `hopeless` is broken off, and costs what is sure by then. `None` if stopped.
+    /// Gives the feasible ones of `individuals` their first trials, and then those on the front of all more and more. A run that is
+    /// sure to cost more than `hopeless` is broken off, and costs what is sure by then. `None` if stopped.
     pub fn race(&self, individuals: &mut [Individual], hopeless: f64) -> Option<()> {
         let most = self.settings.realities;
         let untried = |individual: &Individual| individual.is_feasible() && individual.trials.is_empty();
@@ -77,7 +77,7 @@ impl Trials<'_> {
         let individuals_now: &[Individual] = individuals;
         let one = |&(place, reality): &(usize, u64)| {
             let network = individuals_now[place].tree.network(steepness).ok();
-            network.map_or(Some(UNFIT), |network| self.trial(&draft, &network, reality, hopeless))
+            network.map_or(Some(WORST_COST), |network| self.trial(&draft, &network, reality, hopeless))
         };
         let costs: Option<Vec<f64>> = jobs.par_iter().with_max_len(1).map(one).collect();
         for (&(place, _), cost) in jobs.iter().zip(costs?) {
@@ -110,7 +110,7 @@ impl Trials<'_> {
             }
             let blob = deploy::blob(network.clone(), &scenario.morphogen(), self.task.scale());
             let run = Setting::new(&blob, scenario, &swarm).and_then(|setting| cost(&setting, swarm.clone(), hopeless));
-            sum += run.unwrap_or(UNFIT);
+            sum += run.unwrap_or(WORST_COST);
         }
         Some(sum / self.task.worlds().len() as f64)
     }

@@ -82,7 +82,7 @@ pub struct Simulation {
     pub caging: Caging,
     /// How well the swarm kept to the model's pattern.
     pub metrics: Metrics,
-    /// How long it may take to form: see [`time_to_form_s`](verdict::time_to_form_s).
+    /// How long it may take to form: see [`time_to_form_s`].
     pub time_to_form_s: f64,
     /// What went wrong with robots.
     pub faults: FaultPlan,

@@ -123,6 +123,26 @@ fn the_command_line_says_what_is_simulated_and_old_simulations_go() -> Outcome {
 }
 
 #[test]
+fn runs_that_were_tried_in_another_laboratory_are_not_taken_for_these() -> Outcome {
+    let desk = Desk::new()?;
+    let plan = |set: &str| {
+        format!(
+            "name = \"tried\"\nseeds = 1\n[[scenario]]\nfile = \"world.toml\"\nevaluations = 800\n[[method]]\nname = \"m\"\n\
+             algorithm = \"mogp\"\nmotifs = \"all\"\nobjectives = [\"nodes\", \"closed-loop\"]\nrealities = 1\n\
+             [simulate]\nrealities = 1\nspeed_m_per_s = 0.12\nset = [{set}]\n"
+        )
+    };
+    let out = desk.path("out");
+    assert_done(&campaign(&written(&desk, &plan(""))?, &out, &[]).output()?);
+    assert_done(&campaign(&written(&desk, &plan(""))?, &out, &[]).output()?);
+    let other = campaign(&written(&desk, &plan("\"radio.loss=0.5\""))?, &out, &[]).output()?;
+    let message = text(&other.stderr);
+    assert_eq!(other.status.code(), Some(2), "{message}");
+    assert!(message.contains("not the same run: swarm.lab.radio.loss"), "{message}");
+    Ok(())
+}
+
+#[test]
 fn a_campaign_refuses_what_is_not_its_own_and_what_it_cannot_do() -> Outcome {
     let desk = Desk::new()?;
     let refused = |text_of_file: &str, more: &[&str], words: &[&str]| -> Outcome {

@@ -4,6 +4,7 @@ use super::method::Method;
 use super::simulate::Simulate;
 use crate::evolve::Task;
 use crate::files;
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
@@ -30,10 +31,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// What runs in the scenario at this place are for; swarms are tried under the conditions in which knees are simulated.
+    /// The swarm that models are tried on: under the conditions in which knees are simulated.
+    pub fn swarm(&self) -> SwarmConfig {
+        self.simulate.clone().unwrap_or_default().config()
+    }
+
+    /// What runs in the scenario at this place are for.
     pub fn task(&self, scenario: usize) -> Task {
-        let swarm = self.simulate.clone().unwrap_or_default().config();
-        Task::in_one(self.scenarios[scenario].scenario.clone(), swarm)
+        Task::in_one(self.scenarios[scenario].scenario.clone(), self.swarm())
     }
 }
 

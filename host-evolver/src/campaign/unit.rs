@@ -5,6 +5,7 @@ use super::plan::{Plan, slug};
 use crate::evolve::{FrontMember, Milestone};
 use crate::files::{self, Contents, FileError, Ledger};
 use crate::results;
+use firmware_sim::config::SwarmConfig;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::io::ErrorKind;
@@ -22,6 +23,9 @@ struct Manifest {
     evaluations: usize,
     method: Method,
     seed: u64,
+    /// The swarm that models are tried on, if they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    swarm: Option<SwarmConfig>,
     /// The run's files with the SHA-256 of each.
     files: Ledger,
 }
@@ -65,12 +69,14 @@ impl Unit {
 
     fn manifest(self, plan: &Plan) -> Manifest {
         let planned = &plan.scenarios[self.scenario];
+        let method = plan.methods[self.method].method.clone();
         Manifest {
             grn: files::VERSION.into(),
             scenario: planned.scenario.name().into(),
             scenario_sha256: files::sha256(planned.scenario.to_toml()),
             evaluations: planned.evaluations,
-            method: plan.methods[self.method].method.clone(),
+            swarm: method.objectives().need_trials().then(|| plan.swarm()),
+            method,
             seed: self.seed,
             files: Ledger::default(),
         }

@@ -274,7 +274,7 @@ impl<'w> Search<'w> {
         Trials { task: self.task, settings: &self.settings, stop }
     }
 
-    /// A run that costs more than the worst of the population decides nothing any more.
+    /// A model that costs more than the worst of a full population decides nothing any more.
     fn hopeless(&self) -> f64 {
         let population = &self.state.population;
         let costs = population.iter().filter_map(Individual::cost);

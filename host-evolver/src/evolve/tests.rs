@@ -1,4 +1,5 @@
 use super::objective::{Candidate, Nodes, RingError};
+use super::trials::Trials;
 use super::*;
 use crate::simulation::usual_config;
 use firmware_sim::config::SwarmConfig;
@@ -177,6 +178,31 @@ fn who_is_on_the_front_has_had_all_trials_and_others_few() {
     assert_eq!(best.map(trials), Some(3));
     let least = search.state().history.last().and_then(|last| last.best_cost);
     assert_eq!(best.and_then(Individual::cost), least);
+}
+
+#[test]
+fn a_model_whose_runs_are_broken_off_never_seems_better_than_the_bound() {
+    let task = quick();
+    let mut search = Search::new(&task, tried(), None).unwrap();
+    run(&mut search, 2);
+    let (settings, go) = (tried(), AtomicBool::new(false));
+    let trials = Trials { task: &task, settings: &settings, stop: &go };
+    let mut broken_off = 0;
+    for individual in search.state().population.iter().filter(|one| one.is_feasible()) {
+        let cost = |hopeless: f64| {
+            let mut again = [Individual { trials: Vec::new(), ..individual.clone() }];
+            trials.extend(&mut again, &[0], 2, hopeless).unwrap();
+            again[0].cost().unwrap()
+        };
+        let truth = cost(f64::INFINITY);
+        assert_eq!(cost(2.0 * truth), truth, "no run of two costs more than both together");
+        for hopeless in [0.3 * truth, 0.6 * truth, 0.9 * truth] {
+            let found = cost(hopeless);
+            assert!(found == truth || (hopeless..=truth).contains(&found), "{found} of {truth}, bound {hopeless}");
+            broken_off += usize::from(found != truth);
+        }
+    }
+    assert!(broken_off > 0);
 }
 
 #[test]

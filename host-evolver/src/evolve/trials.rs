@@ -44,8 +44,8 @@ pub(super) struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    /// Gives the feasible ones of `individuals` their first trials, and then those on the front of all more and more. A run that is
-    /// sure to cost more than `hopeless` is broken off, and costs what is sure by then. `None` if stopped.
+    /// Gives the feasible ones of `individuals` their first trials, and then those on the front of all more and more. Once a run alone
+    /// makes sure that a model's mean cost will exceed `hopeless`, it is broken off, and costs what is sure by then. `None` if stopped.
     pub fn race(&self, individuals: &mut [Individual], hopeless: f64) -> Option<()> {
         let most = self.settings.realities;
         let untried = |individual: &Individual| individual.is_feasible() && individual.trials.is_empty();
@@ -65,7 +65,7 @@ impl Trials<'_> {
         }
     }
 
-    /// Brings the individuals at `places` to so many trials.
+    /// Brings the individuals at `places` to so many trials; runs are broken off as in a [race](Self::race).
     pub fn extend(&self, individuals: &mut [Individual], places: &[usize], count: usize, hopeless: f64) -> Option<()> {
         let jobs = places.iter().flat_map(|&place| {
             let done = individuals[place].trials.len();
@@ -76,8 +76,11 @@ impl Trials<'_> {
         let draft = draft(self.task.swarm());
         let individuals_now: &[Individual] = individuals;
         let one = |&(place, reality): &(usize, u64)| {
-            let network = individuals_now[place].tree.network(steepness).ok();
-            network.map_or(Some(WORST_COST), |network| self.trial(&draft, &network, reality, hopeless))
+            let individual = &individuals_now[place];
+            let known: f64 = individual.trials.iter().sum();
+            let most = hopeless * count as f64 - known;
+            let network = individual.tree.network(steepness).ok();
+            network.map_or(Some(WORST_COST), |network| self.trial(&draft, &network, reality, most))
         };
         let costs: Option<Vec<f64>> = jobs.par_iter().with_max_len(1).map(one).collect();
         for (&(place, _), cost) in jobs.iter().zip(costs?) {
@@ -100,18 +103,23 @@ impl Trials<'_> {
         Some(costs?.chunks(count.max(1)).map(<[f64]>::to_vec).collect())
     }
 
-    /// The mean cost of the runs in one reality; `None` if stopped.
-    fn trial(&self, swarm: &SwarmConfig, network: &Network<f32>, reality: u64, hopeless: f64) -> Option<f64> {
+    /// The mean cost of the runs in one reality; once it is sure to exceed `most`, what is sure by then. `None` if stopped.
+    fn trial(&self, swarm: &SwarmConfig, network: &Network<f32>, reality: u64, most: f64) -> Option<f64> {
         let swarm = realities::reality(swarm, reality);
+        let worlds = self.task.worlds().len() as f64;
         let mut sum = 0.0;
         for scenario in self.task.scenarios() {
             if self.stop.load(Relaxed) {
                 return None;
             }
+            let left = most * worlds - sum;
+            if left < 0.0 {
+                break;
+            }
             let blob = deploy::blob(network.clone(), &scenario.morphogen(), self.task.scale());
-            let run = Setting::new(&blob, scenario, &swarm).and_then(|setting| cost(&setting, swarm.clone(), hopeless));
+            let run = Setting::new(&blob, scenario, &swarm).and_then(|setting| cost(&setting, swarm.clone(), left));
             sum += run.unwrap_or(WORST_COST);
         }
-        Some(sum / self.task.worlds().len() as f64)
+        Some(sum / worlds)
     }
 }

@@ -265,12 +265,12 @@ pub fn meter<'a>(
     })
 }
 
-/// What a run costs: J of [`Caging::cost`], and nothing else is measured. Once it is sure to be more than `hopeless` the run is broken
-/// off, and costs what is sure by then.
+/// What a run costs: J of [`Caging::cost`], and nothing else is measured. Once it is sure to be more than `most` the run is broken off, and
+/// costs what is sure by then.
 ///
 /// # Errors
 /// As of [`simulate`].
-pub fn cost(setting: &Setting<'_>, config: SwarmConfig, hopeless: f64) -> Result<f64, SimulationError> {
+pub fn cost(setting: &Setting<'_>, config: SwarmConfig, most: f64) -> Result<f64, SimulationError> {
     let Setting { blob, scenario, circumference } = setting.clone();
     let swarm = Swarm::with_pattern(scenario, config, circumference, native::<f32>(blob)?);
     let mut swarm = swarm.map_err(SimulationError::Config)?;
@@ -281,7 +281,7 @@ pub fn cost(setting: &Setting<'_>, config: SwarmConfig, hopeless: f64) -> Result
     while swarm.tick() < end {
         swarm.step().map_err(SimulationError::Brain)?;
         meter.observe(&swarm.frame());
-        if swarm.tick().is_multiple_of(u64::from(TICKS_PER_SECOND)) && meter.least_cost() > hopeless {
+        if swarm.tick().is_multiple_of(u64::from(TICKS_PER_SECOND)) && meter.least_cost() > most {
             return Ok(meter.least_cost());
         }
     }

@@ -2,7 +2,9 @@
 
 use core::f64::consts::{PI, TAU};
 use firmware_sim::config::SwarmConfig;
+use firmware_sim::geometry::Walls;
 use firmware_sim::scenario::{Scenario, Scene};
+use grn_core::geometry::Point;
 use grn_core::robot::epuck2::BODY_RADIUS;
 
 /// How many moments of the targets' way are looked at.
@@ -33,15 +35,15 @@ pub fn doubts(scenario: &Scenario, config: &SwarmConfig) -> Vec<String> {
             TAU * ring.d_max
         ));
     }
-    if let Some((clearance, target)) = narrowest(&world)
-        && clearance < BODY_RADIUS
+    let body = 2.0 * BODY_RADIUS;
+    if let Some((width, target)) = narrowest(&world)
+        && width < body
     {
         doubts.push(format!(
-            "no robot passes between target {} and a wall where they are {clearance:.3} m apart: a body is {:.2} m across; take a scale \
-             of at least {:.2}",
+            "target {} goes through a passage {width:.3} m wide, where no robot can follow: a body is {body:.2} m across; take a scale of \
+             at least {:.2}",
             target + 1,
-            2.0 * BODY_RADIUS,
-            scale * BODY_RADIUS / clearance.max(f64::MIN_POSITIVE)
+            scale * body / width.max(f64::MIN_POSITIVE)
         ));
     }
     // Gaps between discs of d_max / 4 let a target through.
@@ -55,16 +57,21 @@ pub fn doubts(scenario: &Scenario, config: &SwarmConfig) -> Vec<String> {
     doubts
 }
 
-/// Where a target comes nearest to a wall: how near, metres, and which target.
+/// The narrowest passage between walls that a target goes through: how wide, metres, and which target.
 fn narrowest(world: &Scenario) -> Option<(f64, usize)> {
     let at = |moment: u32| Scene::of(world, f64::from(moment) / f64::from(MOMENTS));
     let of_scene = |scene: Scene| {
-        let targets: Vec<_> = scene.targets().to_vec();
-        let near = |(number, place)| (scene.walls().signed_distance(place), number);
-        let there = targets.into_iter().enumerate().filter_map(|(number, place)| Some((number, place?)));
-        there.map(near).min_by(|a, b| a.0.total_cmp(&b.0))
+        let width = |(number, place): (usize, &Option<Point<f64>>)| Some((width_at(scene.walls(), (*place)?)?, number));
+        scene.targets().iter().enumerate().filter_map(width).min_by(|a, b| a.0.total_cmp(&b.0))
     };
     (0..=MOMENTS).map(at).filter_map(of_scene).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// How wide it is from the nearest wall across this place to the wall on the other side, if there is one near enough to matter.
+fn width_at(walls: &Walls, place: Point<f64>) -> Option<f64> {
+    let (nearest, _) = walls.nearest_boundary(place)?;
+    let from_wall = place - nearest;
+    Some(from_wall.length() + walls.ray(place, from_wall.direction()?, 2.0 * BODY_RADIUS)?)
 }
 
 #[cfg(test)]
@@ -97,7 +104,16 @@ mod tests {
         assert!(full[0].contains("60 robots") && full[0].contains("holds 44 bodies"), "{}", full[0]);
         let few = told("open", 3, 0.25);
         assert!(few.last().is_some_and(|few| few.contains("leave gaps")), "{few:?}");
-        let small = told("compound-channel", 12, 0.015);
-        assert!(small.iter().any(|doubt| doubt.contains("no robot passes")), "{small:?}");
+        // A passage of 1.6 m, and robots of 7 cm.
+        let small = told("adaptive/narrow", 12, 0.04);
+        assert!(
+            small.iter().any(|doubt| doubt.contains("0.064 m wide") && doubt.contains("at least 0.04")),
+            "{small:?}"
+        );
+        assert!(!told("adaptive/narrow", 12, 0.044).iter().any(|doubt| doubt.contains("wide")));
+        assert!(
+            !told("adaptive/corner", 12, 0.04).iter().any(|doubt| doubt.contains("wide")),
+            "one wall is no passage"
+        );
     }
 }

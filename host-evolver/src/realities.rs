@@ -107,7 +107,7 @@ impl Robustness {
         wilson(self.works(), self.realities.len())
     }
 
-    /// The mean of a measure.
+    /// The mean of a measure; NaN without realities.
     pub fn mean(&self, measure: impl Fn(&Reality) -> f64) -> f64 {
         self.realities.iter().map(measure).sum::<f64>() / self.realities.len() as f64
     }

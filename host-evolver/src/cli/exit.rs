@@ -32,7 +32,7 @@ impl From<Exit> for ExitCode {
 }
 
 /// What help says about them.
-pub const WORDS: &str = "Exit codes: 0 done; 1 done, but the answer is no (not encircled, infeasible); 2 bad input; \
+pub const WORDS: &str = "Exit codes: 0 done; 1 done, but the answer is no (it does not work, infeasible); 2 bad input; \
                          3 the system failed (disk full, broken device, no threads), or grn itself; 130 interrupted.";
 
 #[cfg(test)]

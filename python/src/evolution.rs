@@ -182,7 +182,7 @@ impl Order {
             // Nobody listens any more only when the caller has gone.
             let _ = search.state().history.last().map(|milestone| news.send(self.progress(milestone)));
         }
-        let front = search.confirmed_front(stop).ok_or(Ended::Stopped)?;
+        let front = search.confirmed_front(stop, &|| ()).ok_or(Ended::Stopped)?;
         let feasible = front.iter().all(|member| member.is_feasible());
         let results = run.results(&search, &front)?;
         let (mut contents, knee) = (results.contents, results.knee);

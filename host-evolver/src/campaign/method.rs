@@ -125,7 +125,7 @@ fn mogp(task: &Task, settings: Settings, stop: &AtomicBool) -> Option<Outcome> {
             Advance::Interrupted => return None,
         }
     }
-    Some(Outcome { front: search.confirmed_front(stop)?, history: search.state().history.clone() })
+    Some(Outcome { front: search.confirmed_front(stop, &|| ())?, history: search.state().history.clone() })
 }
 
 /// Makes the member that is best in the last objective the only knee.

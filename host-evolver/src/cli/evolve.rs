@@ -4,7 +4,9 @@ use super::conditions::Conditions;
 use super::simulate::{check_swarm, table, watched};
 use super::{Answer, Failure, about, interrupt, options, output, progress, this_command};
 use crate::evaluation::{ConstraintNames, Contours, Model, Snapshot, Tracer, World};
-use crate::evolve::{Advance, FrontMember, MOST_EVALUATIONS, MOST_REALITIES, Objectives, Search, Settings, Task};
+use crate::evolve::{
+    Advance, FrontMember, MOST_EVALUATIONS, MOST_REALITIES, Milestone, Objectives, Search, Settings, Task,
+};
 use crate::files::FileError;
 use crate::model::deploy::DEFAULT_SCALE;
 use crate::model::notation::Digits;
@@ -20,7 +22,6 @@ use indicatif::ProgressBar;
 use std::io::ErrorKind;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 /// The most worlds of a run: each is kept with its walls.
@@ -130,7 +131,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     run.notices().iter().for_each(output::notice);
     let mut search = Search::new(&task, settings.clone(), state).map_err(|error| Failure::from(error).of_program())?;
     search_on(&mut search, &run, &pool, &stop, &folder)?;
-    let front = pool.install(|| search.confirmed_front(&stop)).ok_or_else(|| interrupted(&search, &folder))?;
+    let front = confirmed(&search, &pool, &stop).ok_or_else(|| interrupted(&search, &folder))?;
     let is_feasible = front.iter().all(|member| member.is_feasible());
     let Results { mut contents, knee, not_drawn } = run.results(&search, &front)?;
     run.add(&contents)?;
@@ -255,30 +256,19 @@ fn search_on(
     let bar = ProgressBar::new(search.settings().evaluations as u64)
         .with_style(progress::style("evolving {bar:40} {pos}/{len} evaluations · {msg} · {left}", &found));
     let each = search.settings().evaluations_each() as u64;
-    let best = Mutex::new(search.state().history.last().and_then(|milestone| milestone.best_f2));
-    bar.set_message(best_text(*best.lock().unwrap_or_else(|poisoned| poisoned.into_inner())));
     loop {
         bar.set_position(search.state().evaluations as u64);
-        let advance = pool.install(|| {
-            search.advance(stop, &|individual| {
-                bar.inc(each);
-                let mut best = best.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-                if individual.is_feasible() && best.is_none_or(|best| individual.f2 < best) {
-                    *best = Some(individual.f2);
-                    bar.set_message(best_text(*best));
-                }
-            })
-        });
+        bar.set_message(best_text(search));
+        let advance = pool.install(|| search.advance(stop, &|_| bar.inc(each)));
         match advance {
             Advance::Generation => {
                 run.save(search.state())?;
                 if bar.is_hidden() {
-                    let best = search.state().history.last().and_then(|milestone| milestone.best_f2);
                     output::notice(format_args!(
                         "generation {}: {} evaluations, {}",
                         search.state().generation,
                         search.state().evaluations,
-                        best_text(best)
+                        best_text(search)
                     ));
                 }
             }
@@ -302,8 +292,29 @@ fn interrupted(search: &Search<'_>, folder: &Path) -> Failure {
     ))
 }
 
-fn best_text(best: Option<f64>) -> String {
-    best.map_or("nothing feasible yet".into(), |f2| format!("best f2 {f2:.5}"))
+/// The front, judged anew on simulated swarms if the objectives are made from trials, with a progress bar.
+fn confirmed(search: &Search<'_>, pool: &rayon::ThreadPool, stop: &AtomicBool) -> Option<Vec<FrontMember>> {
+    if !search.settings().objectives.need_trials() {
+        return Some(search.front());
+    }
+    let bar = ProgressBar::new_spinner().with_style(progress::style(
+        "refining and confirming the best models · {pos} trials",
+        &progress::Found::default(),
+    ));
+    if bar.is_hidden() {
+        output::notice("refining and confirming the best models on simulated swarms");
+    }
+    let front = pool.install(|| search.confirmed_front(stop, &|| bar.inc(1)));
+    bar.finish_and_clear();
+    front
+}
+
+fn best_text(search: &Search<'_>) -> String {
+    match search.state().history.last() {
+        Some(Milestone { best_cost: Some(cost), .. }) => format!("best J {cost:.3}"),
+        Some(Milestone { best_f2: Some(f2), .. }) => format!("best f2 {f2:.5}"),
+        _ => "nothing feasible yet".into(),
+    }
 }
 
 fn front_table(objectives: &Objectives, front: &[FrontMember]) -> String {

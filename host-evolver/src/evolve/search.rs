@@ -133,7 +133,7 @@ impl<'w> Search<'w> {
         let mut rivals: Vec<Individual> = self.state.population.iter().cloned().chain(offspring).collect();
         if self.settings.objectives.need_trials() {
             let hopeless = self.hopeless();
-            if self.trials(stop).race(&mut rivals, hopeless).is_none() {
+            if self.trials(stop, &|| ()).race(&mut rivals, hopeless).is_none() {
                 return Advance::Interrupted;
             }
         }
@@ -270,8 +270,8 @@ impl<'w> Search<'w> {
         survivors.into_iter().map(|place| unique[place].clone()).collect()
     }
 
-    fn trials<'a>(&'a self, stop: &'a AtomicBool) -> Trials<'a> {
-        Trials { task: self.task, settings: &self.settings, stop }
+    fn trials<'a>(&'a self, stop: &'a AtomicBool, done: &'a (dyn Fn() + Sync)) -> Trials<'a> {
+        Trials { task: self.task, settings: &self.settings, stop, done }
     }
 
     /// A model that costs more than the worst of a full population decides nothing any more.
@@ -283,8 +283,9 @@ impl<'w> Search<'w> {
     }
 
     /// The front of a run whose objectives are made from trials, judged by trials that the search has not seen; its knee is the
-    /// simplest member that is as good as the best. Of another run [`front`](Self::front). `None` if stopped.
-    pub fn confirmed_front(&self, stop: &AtomicBool) -> Option<Vec<FrontMember>> {
+    /// simplest member that is as good as the best. Of another run [`front`](Self::front). `tried` is called after each trial.
+    /// `None` if stopped.
+    pub fn confirmed_front(&self, stop: &AtomicBool, tried: &(dyn Fn() + Sync)) -> Option<Vec<FrontMember>> {
         if !self.settings.objectives.need_trials() {
             return Some(self.front());
         }
@@ -295,30 +296,31 @@ impl<'w> Search<'w> {
             return Some(self.front());
         }
         let network = |member: &Individual| member.tree.network(self.settings.steepness).ok();
-        self.refine(&mut members, stop)?;
+        let trials = self.trials(stop, tried);
+        self.refine(&mut members, &trials)?;
         let networks: Vec<_> = members.iter().filter_map(network).collect();
-        for (member, costs) in members.iter_mut().zip(self.trials(stop).fresh(&networks)?) {
+        for (member, costs) in members.iter_mut().zip(trials.fresh(&networks)?) {
             member.trials = costs;
             member.value_trials(&self.settings.objectives);
         }
         let front = ranking::non_dominated(&members.iter().collect::<Vec<_>>());
         let mut front: Vec<&Individual> = front.into_iter().map(|place| &members[place]).collect();
         front.sort_by(|a, b| lexicographic(&a.objectives, &b.objectives));
-        let tried = front.iter().map(|one| Tried { complexity: one.tree.size() as f64, costs: &one.trials });
-        let chosen = parsimonious(&tried.collect::<Vec<_>>());
+        let candidates = front.iter().map(|one| Tried { complexity: one.tree.size() as f64, costs: &one.trials });
+        let chosen = parsimonious(&candidates.collect::<Vec<_>>());
         let knee = |place: usize| Knee { parsimony: chosen == Some(place), ..Knee::default() };
         Some(front.iter().enumerate().filter_map(|(place, member)| self.member(member, knee(place))).collect())
     }
 
     /// Refines the best of these. `None` if stopped.
-    fn refine(&self, members: &mut [Individual], stop: &AtomicBool) -> Option<()> {
+    fn refine(&self, members: &mut [Individual], trials: &Trials<'_>) -> Option<()> {
         let mut best: Vec<usize> = (0..members.len()).collect();
         best.sort_by(|&a, &b| members[a].cost().partial_cmp(&members[b].cost()).unwrap_or(Ordering::Equal));
         best.truncate(MOST_REFINED);
         let each = self.settings.refining_evaluations() / best.len().max(1);
         let mut evaluator = self.task.evaluator(&self.settings);
         for (nth, &place) in best.iter().enumerate() {
-            members[place] = refined(&self.trials(stop), &mut evaluator, &members[place], each, nth as u64)?;
+            members[place] = refined(trials, &mut evaluator, &members[place], each, nth as u64)?;
         }
         Some(())
     }

@@ -149,7 +149,7 @@ fn trials_depend_on_neither_threads_nor_interruptions() {
     let go = AtomicBool::new(false);
     let confirmed = |search: &Search<'_>, threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| search.confirmed_front(&go)).unwrap()
+        pool.install(|| search.confirmed_front(&go, &|| ())).unwrap()
     };
     let mut one = Search::new(&task, tried(), None).unwrap();
     run(&mut one, 1);
@@ -161,7 +161,7 @@ fn trials_depend_on_neither_threads_nor_interruptions() {
     assert_eq!(one.state(), resumed.state());
     assert_eq!(confirmed(&one, 1), confirmed(&resumed, 3));
     let stop = AtomicBool::new(true);
-    assert!(one.confirmed_front(&stop).is_none());
+    assert!(one.confirmed_front(&stop, &|| ()).is_none());
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn a_model_whose_runs_are_broken_off_never_seems_better_than_the_bound() {
     let mut search = Search::new(&task, tried(), None).unwrap();
     run(&mut search, 2);
     let (settings, go) = (tried(), AtomicBool::new(false));
-    let trials = Trials { task: &task, settings: &settings, stop: &go };
+    let trials = Trials { task: &task, settings: &settings, stop: &go, done: &|| () };
     let mut broken_off = 0;
     for individual in search.state().population.iter().filter(|one| one.is_feasible()) {
         let cost = |hopeless: f64| {
@@ -210,7 +210,7 @@ fn the_knee_of_tried_models_is_confirmed_by_trials_that_the_search_has_not_seen(
     let task = quick();
     let mut search = Search::new(&task, tried(), None).unwrap();
     run(&mut search, 2);
-    let front = search.confirmed_front(&AtomicBool::new(false)).unwrap();
+    let front = search.confirmed_front(&AtomicBool::new(false), &|| ()).unwrap();
     assert_eq!(front.iter().filter(|member| member.knee.parsimony).count(), 1);
     assert!(front.iter().all(|member| !member.knee.angle && !member.knee.utility));
     let costs: Vec<f64> = front.iter().map(|member| member.further[0]).collect();

@@ -41,6 +41,8 @@ pub(super) struct Trials<'a> {
     pub task: &'a Task,
     pub settings: &'a Settings,
     pub stop: &'a AtomicBool,
+    /// Is called after each trial.
+    pub done: &'a (dyn Fn() + Sync),
 }
 
 impl Trials<'_> {
@@ -120,6 +122,7 @@ impl Trials<'_> {
             let run = Setting::new(&blob, scenario, &swarm).and_then(|setting| cost(&setting, swarm.clone(), left));
             sum += run.unwrap_or(WORST_COST);
         }
+        (self.done)();
         Some(sum / worlds)
     }
 }

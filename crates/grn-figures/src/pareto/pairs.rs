@@ -107,7 +107,10 @@ fn entries(points: &[ObjectivesPoint]) -> Vec<(Key, &'static str)> {
     let mut entries = Vec::new();
     for (words, non_dominated, feasible, knee) in kinds {
         let example = ObjectivesPoint { values: Vec::new(), non_dominated, feasible, knee, label: String::new() };
-        let seen = points.iter().find(|point| look(point) == look(&example));
+        // Knees of two kinds look alike.
+        let is_alike =
+            |point: &&ObjectivesPoint| look(point) == look(&example) && (!non_dominated || point.knee == knee);
+        let seen = points.iter().find(is_alike);
         entries.extend(seen.map(|point| {
             let (mark, r, paint) = look(point);
             (Key::Mark(mark, r, paint), words)
@@ -135,6 +138,14 @@ mod tests {
         for words in ["nodes", "f2", "length (m)", "non-dominated", "dominated"] {
             assert!(document.says(words), "{words}");
         }
+    }
+
+    #[test]
+    fn the_legend_tells_which_kind_of_knee_there_is() {
+        let knee = Knee { parsimony: true, ..Knee::default() };
+        let points = vec![point(&[3.0, 0.2], true), ObjectivesPoint { knee, ..point(&[5.0, 0.1], true) }];
+        let document = read(&objectives(&ObjectivesFigure { labels: vec!["nodes", "cost"], points }).unwrap());
+        assert!(document.says("knee (parsimony)") && !document.says("knee of the first two"));
     }
 
     #[test]

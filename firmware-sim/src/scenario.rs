@@ -3,18 +3,25 @@
 //! Lengths are the model's metres; [`Scenario::scaled`] gives the same world in a laboratory's metres. Times go from 0, when the
 //! targets set out, to 1, when they have arrived, whatever that takes.
 
+mod disc;
+mod evasion;
 mod file;
 pub mod limits;
 mod moving;
+mod obstacles;
 mod path;
+mod points;
 mod presence;
 pub mod random;
 mod scene;
+mod start;
 mod tables;
 mod target;
-mod things;
+mod targets;
 mod timing;
 
+pub use disc::Disc;
+pub use evasion::Evasion;
 pub use grn_input::InputError;
 pub use limits::MAX_SNAPSHOTS;
 pub use moving::{Motion, MovingWall};
@@ -22,6 +29,7 @@ pub use path::Path;
 pub use presence::Presence;
 pub use random::RandomObstacles;
 pub use scene::{Course, Scene};
+pub use start::Start;
 pub use target::Target;
 
 use crate::geometry::{Bounds, Polygon, Walls};
@@ -72,8 +80,11 @@ pub struct Scenario {
     duration_s: Option<f64>,
     morphogen: Morphogen,
     ring: Ring,
+    start: Option<Start>,
     targets: Vec<Target>,
+    /// Polygons, then the outlines of the discs.
     fixed_walls: Walls,
+    fixed_discs: Vec<Disc>,
     moving_walls: Vec<MovingWall>,
 }
 
@@ -95,7 +106,7 @@ impl Scenario {
     ///
     /// # Errors
     /// [`InputError`] for text that is not TOML, unknown or missing keys, numbers out of the ranges in [`limits`], alone or
-    /// together, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS), two targets on the same
+    /// together, no target or more than [`MOST_TARGETS`](limits::MOST_TARGETS), two targets on the same
     /// path, a time without a target, paths that leave the region or enter a wall, walls that run into a target, and polygons
     /// that are none.
     pub fn parse(text: &str) -> Result<Scenario, InputError> {
@@ -132,17 +143,33 @@ impl Scenario {
         self.ring
     }
 
-    /// The targets, 1 to 4 of them.
+    /// Where robots begin, if the world says so; else behind the first target.
+    pub fn start(&self) -> Option<&Start> {
+        self.start.as_ref()
+    }
+
+    /// The targets, 1 to 10 of them.
     pub fn targets(&self) -> &[Target] {
         &self.targets
     }
 
-    /// The walls that are always where they are drawn; perhaps none.
+    /// The walls and discs that are always where they are drawn, as polygons, discs last; perhaps none.
     pub fn fixed_walls(&self) -> &Walls {
         &self.fixed_walls
     }
 
-    /// The walls that move, or are not always there; perhaps none.
+    /// The discs among [`fixed_walls`](Scenario::fixed_walls); perhaps none.
+    pub fn fixed_discs(&self) -> &[Disc] {
+        &self.fixed_discs
+    }
+
+    /// The fixed walls that are drawn as polygons.
+    fn fixed_polygons(&self) -> &[Polygon] {
+        let fixed = self.fixed_walls.fixed();
+        &fixed[..fixed.len() - self.fixed_discs.len()]
+    }
+
+    /// The walls and discs that move, or are not always there; perhaps none.
     pub fn moving_walls(&self) -> &[MovingWall] {
         &self.moving_walls
     }
@@ -152,7 +179,7 @@ impl Scenario {
         !self.moving_walls.is_empty()
     }
 
-    /// Where the targets are at a time, 0 at the start of their paths, 1 at the end; those that are there. A target without times of
+    /// Where their paths have the targets at a time, 0 at the start of their paths, 1 at the end; those that are there. A target without times of
     /// its own moves along its path at constant speed, so all such arrive together. A time outside [0, 1] is taken as the nearer end.
     pub fn targets_at(&self, time: f64) -> Vec<Point<f64>> {
         self.targets.iter().filter_map(|target| target.at(time)).collect()
@@ -237,6 +264,8 @@ impl Scenario {
     pub fn scaled(&self, factor: f64) -> Scenario {
         let Morphogen { kernel, target_width, obstacle_width, level } = self.morphogen;
         let Ring { d_min, d_max, d_obstacle, steepness } = self.ring;
+        let fixed_discs: Vec<Disc> = self.fixed_discs.iter().map(|disc| disc.scaled(factor)).collect();
+        let fixed = self.fixed_polygons().iter().map(|polygon| polygon.scaled(factor));
         Scenario {
             name: self.name.clone(),
             region: self.region.map(|side| side * factor),
@@ -254,8 +283,10 @@ impl Scenario {
                 d_obstacle: d_obstacle * factor,
                 steepness: steepness / factor,
             },
+            start: self.start.as_ref().map(|start| start.scaled(factor)),
             targets: self.targets.iter().map(|target| target.scaled(factor)).collect(),
-            fixed_walls: self.fixed_walls.scaled(factor),
+            fixed_walls: Walls::new(fixed.chain(fixed_discs.iter().map(Disc::outline)).collect()),
+            fixed_discs,
             moving_walls: self.moving_walls.iter().map(|wall| wall.scaled(factor)).collect(),
         }
     }

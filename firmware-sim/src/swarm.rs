@@ -11,6 +11,7 @@
 
 mod ailments;
 mod base;
+mod evasion;
 mod outcome;
 mod part;
 mod placement;
@@ -33,6 +34,7 @@ use crate::units::{micrometres, unit_q14};
 use base::BaseStation;
 use core::fmt;
 use core::ops::ControlFlow;
+use evasion::Evasions;
 use grn_core::geometry::Point;
 use grn_core::robot::epuck2::TICKS_PER_SECOND;
 use grn_input::InputError;
@@ -52,6 +54,7 @@ pub struct Swarm<B> {
     course: Course,
     /// Targets and walls at the present moment.
     scene: Scene,
+    evasions: Evasions,
     /// Places on the outlines of walls that mothers may see: those of fixed walls, then those of others at the present moment.
     samples: Vec<Point<f64>>,
     fixed_samples: usize,
@@ -118,21 +121,14 @@ fn set_up(scenario: &Scenario, config: &SwarmConfig) -> Result<(Scenario, Vec<Po
         );
         return Err(InputError::new("scale", config.scale, way_out));
     }
-    let robots = config.lab.robots.count;
-    let poses = placement::scattered(&world, robots, config.lab.base_station.sends, config.seed).ok_or_else(|| {
-        let way_out = format!(
-            "so many robots find no room in the region at scale {}; fewer robots, a larger scale or a larger region are needed",
-            config.scale
-        );
-        InputError::new("robots", robots, way_out)
-    })?;
+    let poses = placement::starting(&world, config)?;
     let faults = FaultPlan::drawn(&config.lab, config.seed, arrival_tick(&Course::of(&world, config)))?;
     Ok((world, poses, faults))
 }
 
 impl<B: Brain> Swarm<B> {
-    /// The scenario's world at the configured scale, with robots at random places behind the first target's start, each
-    /// with the brain that `brain` gives for its number.
+    /// The scenario's world at the configured scale, with robots where it says that they begin, else at random places behind the first
+    /// target's start, each with the brain that `brain` gives for its number.
     ///
     /// # Errors
     /// [`InputError`] when the configuration fails [`SwarmConfig::check`], the scaled world is larger than ±32.767 m,
@@ -167,6 +163,7 @@ impl<B: Brain> Swarm<B> {
             wall_index: WallIndex::new(scene.walls(), WALL_REACH),
             course: Course::of(&world, &config),
             scene,
+            evasions: Evasions::new(world.targets().len()),
             fixed_samples: samples.len(),
             ring: ProximityRing::new(&lab.proximity),
             parts: units.chunks(PART).map(|_| Part::default()).collect(),
@@ -367,6 +364,8 @@ impl<B: Brain> Swarm<B> {
             self.wall_index.set_moving(self.scene.walls());
             self.sample_moving_walls();
         }
+        let step = self.config.target_speed_m_per_s / f64::from(TICKS_PER_SECOND);
+        self.evasions.step(&self.world, &mut self.scene, &self.positions, step);
     }
 
     fn sample_moving_walls(&mut self) {

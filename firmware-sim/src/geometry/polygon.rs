@@ -1,8 +1,12 @@
 //! Simple polygons.
 
 use super::{Bounds, Edge, crossings_odd, length_squared};
+use core::f64::consts::TAU;
 use core::fmt;
 use grn_core::geometry::{Point, Vector};
+
+/// Corners of the polygon that stands for a disc.
+const DISC_CORNERS: usize = 64;
 
 /// Why points do not make a polygon; vertices and edges count from 0, edge i runs from vertex i to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +90,27 @@ impl Polygon {
             return Err(PolygonError::NoArea);
         }
         Ok(Polygon { vertices, edges, bounds, area })
+    }
+
+    /// A disc, of finite centre and positive finite radius, as a polygon of 64 corners. Its outline crosses the circle at each edge twice and
+    /// is nowhere farther from it than 0.061 % of the radius: 0.2 mm for a column 60 cm across.
+    pub fn disc(centre: Point<f64>, radius: f64) -> Self {
+        let edge_angle = TAU / DISC_CORNERS as f64;
+        let to_corner = 2.0 * radius / (1.0 + libm::cos(edge_angle / 2.0));
+        let corner = |place: usize| {
+            let (sin, cos) = libm::sincos(edge_angle * place as f64);
+            centre + Vector::new(cos, sin) * to_corner
+        };
+        let area = DISC_CORNERS as f64 / 2.0 * to_corner * to_corner * libm::sin(edge_angle);
+        Polygon::of_simple((0..DISC_CORNERS).map(corner).collect(), area)
+    }
+
+    /// Of vertices, at least three, that are known to make a simple polygon of this area.
+    fn of_simple(vertices: Vec<Point<f64>>, area: f64) -> Self {
+        let ends = vertices.iter().skip(1).chain(vertices.first());
+        let edges = vertices.iter().zip(ends).map(|(&a, &b)| Edge::new(a, b)).collect();
+        let bounds = Bounds::around(vertices.iter().copied()).unwrap_or(Bounds { low: Point::ZERO, high: Point::ZERO });
+        Polygon { vertices, edges, bounds, area }
     }
 
     /// The vertices as given.
@@ -179,11 +204,7 @@ impl Polygon {
     /// The polygon after a motion: `moved` says where each point goes, and leaves distances as they are.
     #[must_use]
     pub fn moved(&self, moved: impl Fn(Point<f64>) -> Point<f64>) -> Polygon {
-        let vertices: Vec<Point<f64>> = self.vertices.iter().map(|&vertex| moved(vertex)).collect();
-        let ends = vertices.iter().skip(1).chain(vertices.first());
-        let edges = vertices.iter().zip(ends).map(|(&a, &b)| Edge::new(a, b)).collect();
-        let bounds = Bounds::around(vertices.iter().copied()).unwrap_or(self.bounds);
-        Polygon { vertices, edges, bounds, area: self.area }
+        Polygon::of_simple(self.vertices.iter().map(|&vertex| moved(vertex)).collect(), self.area)
     }
 }
 

@@ -1,10 +1,11 @@
 //! The TOML file as it stands, and the checks that make it a [`Scenario`].
 
 use super::limits::{self, DURATION};
-use super::tables::{TargetTable, WallTable};
-use super::things::{checked_targets, checked_walls};
+use super::obstacles::Obstacles;
+use super::tables::{DiscTable, EvasionTable, StartTable, TargetTable, WallTable};
+use super::targets::checked_targets;
 use super::timing::check_course;
-use super::{Morphogen, Ring, Scenario};
+use super::{Morphogen, Ring, Scenario, Start};
 use core::fmt::Write;
 use grn_core::field::Kernel;
 use grn_input::{InputError, Pair, check_name};
@@ -20,10 +21,14 @@ pub(super) struct ScenarioFile {
     duration_s: Option<f64>,
     morphogen: MorphogenTable,
     ring: RingTable,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    start: Option<StartTable>,
     #[serde(default, rename = "target")]
     targets: Vec<TargetTable>,
     #[serde(default, rename = "wall", skip_serializing_if = "Vec::is_empty")]
     walls: Vec<WallTable>,
+    #[serde(default, rename = "disc", skip_serializing_if = "Vec::is_empty")]
+    discs: Vec<DiscTable>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -48,7 +53,8 @@ impl TryFrom<ScenarioFile> for Scenario {
     type Error = InputError;
 
     fn try_from(file: ScenarioFile) -> Result<Scenario, InputError> {
-        let ScenarioFile { name, region: Pair(region), snapshots, duration_s, morphogen, ring, targets, walls } = file;
+        let ScenarioFile { name, region, snapshots, duration_s, morphogen, ring, start, targets, walls, discs } = file;
+        let Pair(region) = region;
         check_name("name", &name)?;
         if let Some(duration_s) = duration_s {
             DURATION.check("duration_s", duration_s)?;
@@ -60,12 +66,26 @@ impl TryFrom<ScenarioFile> for Scenario {
         let RingTable { d_min, d_max, d_obstacle, steepness } = ring;
         let ring = Ring { d_min, d_max, d_obstacle, steepness };
         limits::check_ring(&ring, region)?;
-        let (fixed_walls, moving_walls) = checked_walls(walls, region, snapshots)?;
-        let targets = checked_targets(targets, region, &fixed_walls)?;
-        let scenario =
-            Scenario { name, region, snapshots, duration_s, morphogen, ring, targets, fixed_walls, moving_walls };
+        let obstacles = Obstacles::checked(walls, discs, region, snapshots)?;
+        let targets = checked_targets(targets, region, &obstacles)?;
+        let Obstacles { fixed: fixed_walls, fixed_discs, moving: moving_walls, .. } = obstacles;
+        let mut scenario = Scenario {
+            name,
+            region,
+            snapshots,
+            duration_s,
+            morphogen,
+            ring,
+            start: None,
+            targets,
+            fixed_walls,
+            fixed_discs,
+            moving_walls,
+        };
         limits::check_changing_walls(&scenario)?;
         check_course(&scenario)?;
+        let at_start = |table| Start::checked(table, region, &scenario.walls_at(0.0));
+        scenario.start = start.map(at_start).transpose()?;
         Ok(scenario)
     }
 }
@@ -75,9 +95,13 @@ impl From<Scenario> for ScenarioFile {
         let Morphogen { kernel, target_width, obstacle_width, level } = scenario.morphogen;
         let Ring { d_min, d_max, d_obstacle, steepness } = scenario.ring;
         let mut walls: Vec<WallTable> =
-            scenario.fixed_walls.fixed().iter().map(|polygon| WallTable::fixed(polygon.vertices())).collect();
+            scenario.fixed_polygons().iter().map(|polygon| WallTable::fixed(polygon.vertices())).collect();
+        let mut discs: Vec<DiscTable> = scenario.fixed_discs.iter().map(DiscTable::fixed).collect();
         for wall in &scenario.moving_walls {
-            walls.insert(wall.place.min(walls.len()), WallTable::moving(wall));
+            match &wall.disc {
+                None => walls.insert(wall.place.min(walls.len()), WallTable::moving(wall)),
+                Some(disc) => discs.insert(wall.place.min(discs.len()), DiscTable::moving(disc, wall)),
+            }
         }
         ScenarioFile {
             name: scenario.name,
@@ -86,8 +110,10 @@ impl From<Scenario> for ScenarioFile {
             duration_s: scenario.duration_s,
             morphogen: MorphogenTable { kernel, target_width, obstacle_width, level },
             ring: RingTable { d_min, d_max, d_obstacle, steepness },
+            start: scenario.start.as_ref().map(StartTable::of),
             targets: scenario.targets.iter().map(TargetTable::of).collect(),
             walls,
+            discs,
         }
     }
 }
@@ -118,14 +144,27 @@ impl ScenarioFile {
         let numbers = |key: &str, numbers: &[f64]| {
             if numbers.is_empty() { String::new() } else { format!("{key} = {numbers:?}\n") }
         };
-        for TargetTable { path, times, present } in &self.targets {
-            let lines = [pairs("path", path), numbers("times", times), pairs("present", present)];
+        if let Some(StartTable { centre, radius, positions }) = &self.start {
+            let centre = centre.as_ref().map_or(String::new(), |Pair(centre)| format!("centre = {centre:?}\n"));
+            let radius = radius.map_or(String::new(), |radius| format!("radius = {radius:?}\n"));
+            let positions = pairs("positions", positions.as_deref().unwrap_or_default());
+            let _ = write!(text, "\n[start]\n{centre}{radius}{positions}");
+        }
+        for TargetTable { path, times, present, evade } in &self.targets {
+            let evade = evade.map_or(String::new(), |EvasionTable { distance, reach, speed }| {
+                format!("evade = {{ distance = {distance:?}, reach = {reach:?}, speed = {speed:?} }}\n")
+            });
+            let lines = [pairs("path", path), numbers("times", times), pairs("present", present), evade];
             let _ = write!(text, "\n[[target]]\n{}", lines.concat());
         }
         for WallTable { polygon, path, turn_deg, times, present } in &self.walls {
             let motion = [pairs("path", path), numbers("turn_deg", turn_deg), numbers("times", times)];
             let lines = [pairs("polygon", polygon), motion.concat(), pairs("present", present)];
             let _ = write!(text, "\n[[wall]]\n{}", lines.concat());
+        }
+        for DiscTable { centre: Pair(centre), radius, path, times, present } in &self.discs {
+            let lines = [pairs("path", path), numbers("times", times), pairs("present", present)];
+            let _ = write!(text, "\n[[disc]]\ncentre = {centre:?}\nradius = {radius:?}\n{}", lines.concat());
         }
         text
     }

@@ -3,6 +3,8 @@
 use super::{Morphogen, OBSTACLE_SPACING, Ring, Scenario};
 use grn_input::{InputError, Range};
 
+/// The most targets a scenario may have. Robots know the nearest [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS) of them.
+pub const MOST_TARGETS: usize = 10;
 /// The most snapshots a scenario may ask for.
 pub const MAX_SNAPSHOTS: usize = 10_000;
 /// The most points of a path or polygon: whether a polygon crosses itself is found by comparing all pairs of its edges,
@@ -29,6 +31,8 @@ const MAX_TABLE: f64 = (1 << 20) as f64;
 pub const REGION: Range<f64> = Range::new(0.5, 3000.0, "metres");
 /// How far walls may stick out of the region.
 pub const WALL_OVERHANG: f64 = 100.0;
+/// Radii of discs.
+pub const DISC_RADIUS: Range<f64> = Range::new(0.01, 100.0, "metres (not centimetres)");
 /// How long a run may take, if the scenario says it.
 pub const DURATION: Range<f64> = Range::new(0.1, 3_600_000.0, "seconds");
 /// What a blob can hold.

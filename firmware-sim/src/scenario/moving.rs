@@ -1,7 +1,7 @@
 //! Walls that move, turn, come and go.
 
 use super::path::{Stretch, stretch};
-use super::{Path, Presence};
+use super::{Disc, Path, Presence};
 use crate::geometry::{Bounds, Polygon, length_squared};
 use grn_core::geometry::{Point, Vector};
 
@@ -50,11 +50,13 @@ impl Motion {
     }
 }
 
-/// A wall that is not always where it is drawn.
+/// A wall or disc that is not always where it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MovingWall {
-    /// Its place among the scenario's walls, counted from 0.
+    /// Its place among the scenario's walls, or among its discs, counted from 0.
     pub(super) place: usize,
+    /// What it is, if it is a disc; `drawn` is its outline then.
+    pub(super) disc: Option<Disc>,
     pub(super) drawn: Polygon,
     pub(super) motion: Option<Motion>,
     pub(super) presence: Presence,
@@ -64,6 +66,16 @@ impl MovingWall {
     /// The wall as it is drawn.
     pub fn drawn(&self) -> &Polygon {
         &self.drawn
+    }
+
+    /// The disc that it is, as it is drawn; `None` of a polygon.
+    pub fn disc(&self) -> Option<Disc> {
+        self.disc
+    }
+
+    /// What it is in a file: `wall[2]`, `disc[0]`.
+    pub(super) fn key(&self) -> String {
+        format!("{}[{}]", if self.disc.is_some() { "disc" } else { "wall" }, self.place)
     }
 
     /// How it moves, if it does.
@@ -113,9 +125,11 @@ impl MovingWall {
     #[must_use]
     pub(super) fn scaled(&self, factor: f64) -> MovingWall {
         let scaled = |motion: &Motion| Motion { path: motion.path.scaled(factor), turns_deg: motion.turns_deg.clone() };
+        let disc = self.disc.map(|disc| disc.scaled(factor));
         MovingWall {
             place: self.place,
-            drawn: self.drawn.scaled(factor),
+            disc,
+            drawn: disc.map_or_else(|| self.drawn.scaled(factor), |disc| disc.outline()),
             motion: self.motion.as_ref().map(scaled),
             presence: self.presence.clone(),
         }

@@ -1,7 +1,7 @@
 //! Worlds of round obstacles thrown at random, with the way of every target kept free.
 
 use super::file::ScenarioFile;
-use super::{Path, Scenario};
+use super::{Disc, Path, Scenario};
 use crate::geometry::{Polygon, Walls, nearest_on_segment};
 use crate::random::{Component, Stream};
 use core::f64::consts::TAU;
@@ -69,30 +69,24 @@ impl RandomObstacles {
     }
 }
 
-struct Disc {
-    centre: Point<f64>,
-    radius: f64,
+fn is_clear_of(disc: &Disc, path: &Path, clearance: f64) -> bool {
+    let points = path.points();
+    let ends = points.windows(2).map(|pair| (pair[0], pair[1])).chain(points.first().map(|&only| (only, only)));
+    let nearest = |(start, end)| (nearest_on_segment(start, end, disc.centre) - disc.centre).length();
+    ends.map(nearest).all(|distance| distance >= disc.radius + clearance)
 }
 
-impl Disc {
-    fn is_clear_of(&self, path: &Path, clearance: f64) -> bool {
-        let points = path.points();
-        let ends = points.windows(2).map(|pair| (pair[0], pair[1])).chain(points.first().map(|&only| (only, only)));
-        let nearest = |(start, end)| (nearest_on_segment(start, end, self.centre) - self.centre).length();
-        ends.map(nearest).all(|distance| distance >= self.radius + clearance)
-    }
+fn overlap(a: &Disc, b: &Disc) -> bool {
+    (a.centre - b.centre).length() <= a.radius + b.radius
+}
 
-    fn overlaps(&self, other: &Disc) -> bool {
-        (self.centre - other.centre).length() <= self.radius + other.radius
-    }
-
-    fn outline(&self) -> Vec<Point<f64>> {
-        let corner = |place: usize| {
-            let (sin, cos) = libm::sincos(TAU * place as f64 / CORNERS as f64);
-            self.centre + Vector::new(cos, sin) * self.radius
-        };
-        (0..CORNERS).map(corner).collect()
-    }
+/// Fewer corners than of a disc in a file, as there are many of them.
+fn outline(disc: &Disc) -> Vec<Point<f64>> {
+    let corner = |place: usize| {
+        let (sin, cos) = libm::sincos(TAU * place as f64 / CORNERS as f64);
+        disc.centre + Vector::new(cos, sin) * disc.radius
+    };
+    (0..CORNERS).map(corner).collect()
 }
 
 impl Scenario {
@@ -113,8 +107,8 @@ impl Scenario {
             comparisons += points + discs.len();
             let radius = least + (greatest - least) * stream.unit();
             let disc = Disc { centre: Vector::new(width * stream.unit(), height * stream.unit()), radius };
-            let is_clear = self.targets.iter().all(|target| disc.is_clear_of(&target.path, obstacles.clearance));
-            if is_clear && !discs.iter().any(|other| disc.overlaps(other)) {
+            let is_clear = self.targets.iter().all(|target| is_clear_of(&disc, &target.path, obstacles.clearance));
+            if is_clear && !discs.iter().any(|other| overlap(&disc, other)) {
                 covered += TAU / 2.0 * radius * radius;
                 missed = 0;
                 discs.push(disc);
@@ -128,12 +122,18 @@ impl Scenario {
             }
         }
         let polygon = |(place, disc): (usize, &Disc)| {
-            Polygon::new(disc.outline())
+            Polygon::new(outline(disc))
                 .map_err(|_| InputError::new(format!("obstacle {place}"), disc.radius, "too small"))
         };
         let walls = discs.iter().enumerate().map(polygon).collect::<Result<_, _>>()?;
         let name = format!("{}-{}", self.name, obstacles.seed);
-        let world = Scenario { name, fixed_walls: Walls::new(walls), moving_walls: Vec::new(), ..self.clone() };
+        let world = Scenario {
+            name,
+            fixed_walls: Walls::new(walls),
+            fixed_discs: Vec::new(),
+            moving_walls: Vec::new(),
+            ..self.clone()
+        };
         Scenario::try_from(ScenarioFile::from(world))
     }
 }

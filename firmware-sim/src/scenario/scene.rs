@@ -34,6 +34,16 @@ impl Scene {
         }
     }
 
+    /// The time, 0 to 1.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Puts a target elsewhere than its path would have it.
+    pub(crate) fn put_target(&mut self, target: usize, place: Point<f64>) {
+        self.targets[target] = Some(place);
+    }
+
     /// Where each target is, metres; `None` while it is not there.
     pub fn targets(&self) -> &[Option<Point<f64>>] {
         &self.targets

@@ -1,5 +1,6 @@
 //! When things in a file move, come and go, checked.
 
+use super::evasion::check_evasion;
 use super::{Motion, Path, Scenario};
 use crate::geometry::Polygon;
 use grn_core::geometry::Point;
@@ -88,7 +89,7 @@ fn even_times(path: &[Point<f64>]) -> Option<Vec<f64>> {
     times.windows(2).all(|pair| pair[0] < pair[1]).then_some(times)
 }
 
-/// Whether there is always a target, and no wall ever runs into one.
+/// Whether there is always a target, and no wall ever runs into one, nor can one that evades run into a wall.
 pub(super) fn check_course(world: &Scenario) -> Result<(), InputError> {
     let changes = world.changes();
     if let Some(time) = [0.0].iter().chain(&changes).chain(&[1.0]).find(|&&time| world.targets_at(time).is_empty()) {
@@ -100,14 +101,19 @@ pub(super) fn check_course(world: &Scenario) -> Result<(), InputError> {
                         add duration_s, in seconds, beside region";
         return Err(InputError::new("duration_s", "", expected));
     }
-    if !world.walls_change() {
-        return Ok(());
-    }
     let mut times: Vec<f64> =
         (0..=MOMENTS).map(|moment| f64::from(moment) / f64::from(MOMENTS)).chain(changes).collect();
     times.sort_by(f64::total_cmp);
+    if world.walls_change() {
+        check_collisions(world, &times)?;
+    }
+    check_evasion(world, &times)
+}
+
+/// Whether no wall runs into a target on its path, looked at at these times, rising.
+fn check_collisions(world: &Scenario, times: &[f64]) -> Result<(), InputError> {
     let mut before: Vec<Option<Point<f64>>> = vec![None; world.targets().len()];
-    for time in times {
+    for &time in times {
         let now: Vec<Option<Point<f64>>> = world.targets().iter().map(|target| target.at(time)).collect();
         for wall in world.moving_walls() {
             let Some(polygon) = wall.at(time) else { continue };
@@ -118,7 +124,7 @@ pub(super) fn check_course(world: &Scenario) -> Result<(), InputError> {
                          of them, or change its times",
                         here.x, here.y
                     );
-                    return Err(InputError::new(format!("wall[{}]", wall.place), "", expected));
+                    return Err(InputError::new(wall.key(), "", expected));
                 }
             }
         }

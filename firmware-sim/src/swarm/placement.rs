@@ -1,12 +1,14 @@
 //! Where robots start.
 
 use crate::body::Pose;
+use crate::config::SwarmConfig;
 use crate::geometry::{Walls, length_squared};
 use crate::random::{Component, Stream};
-use crate::scenario::Scenario;
+use crate::scenario::{Disc, Scenario, Start};
 use core::f64::consts::TAU;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::BODY_RADIUS;
+use grn_input::InputError;
 
 /// Inner and outer radius of the ring in which robots start, in multiples of the scenario's `d_max`.
 const START_RING: [f64; 2] = [0.3, 1.6];
@@ -25,11 +27,89 @@ const CARRIED_TRIES: u32 = 1000;
 /// Misses in a row after which the ring is made a tenth wider.
 const PATIENCE: u32 = 200;
 
+/// Misses in a row after which a disc in which robots begin counts as full.
+const DISC_PATIENCE: u32 = 20_000;
+
+/// The robots of a run in `world`, which is in real metres, at the start: where the world says, else [`scattered`].
+pub(super) fn starting(world: &Scenario, config: &SwarmConfig) -> Result<Vec<Pose>, InputError> {
+    let count = config.lab.robots.count;
+    let at_base = config.lab.base_station.sends;
+    match world.start() {
+        Some(Start::Within(disc)) => within(world, disc, count, at_base, config.seed).ok_or_else(|| {
+            let way_out = format!(
+                "{count} robots find no room between walls in this disc at scale {}; fewer robots, a larger scale or a larger radius \
+                 are needed",
+                config.scale
+            );
+            InputError::new("start.radius", format!("{:?}", disc.radius / config.scale), way_out)
+        }),
+        Some(Start::At(positions)) => at(world, positions, config),
+        None => scattered(world, count, at_base, config.seed).ok_or_else(|| {
+            let way_out = format!(
+                "so many robots find no room in the region at scale {}; fewer robots, a larger scale or a larger region are needed",
+                config.scale
+            );
+            InputError::new("robots", count, way_out)
+        }),
+    }
+}
+
+/// `count` robots at random places in a disc, with random headings, clear of walls and of each other; `None` when it is full before.
+fn within(world: &Scenario, disc: &Disc, count: usize, at_base: bool, seed: u64) -> Option<Vec<Pose>> {
+    let mut stream = Stream::new(seed, Component::Placement, 0);
+    let walls = world.walls_at(0.0);
+    let clearance = if at_base { BASE_CLEARANCE } else { CLEARANCE };
+    let mut poses: Vec<Pose> = Vec::with_capacity(count);
+    let mut misses = 0;
+    while poses.len() < count {
+        // Uniform by area.
+        let radius = disc.radius * stream.unit().sqrt();
+        let position = disc.centre + turned(stream.unit()) * radius;
+        let heading = turned(stream.unit());
+        if free(world, &walls, &poses, position, clearance) {
+            poses.push(Pose { position, heading });
+            misses = 0;
+        } else {
+            misses += 1;
+            if misses == DISC_PATIENCE {
+                return None;
+            }
+        }
+    }
+    Some(poses)
+}
+
+/// Robots at the first of these places, with random headings.
+fn at(world: &Scenario, positions: &[Point<f64>], config: &SwarmConfig) -> Result<Vec<Pose>, InputError> {
+    let count = config.lab.robots.count;
+    if positions.len() < count {
+        let way_out = format!("the laboratory has {count} robots; a place is needed for each");
+        return Err(InputError::new("start.positions", format!("{} places", positions.len()), way_out));
+    }
+    let mut stream = Stream::new(config.seed, Component::Placement, 0);
+    let walls = world.walls_at(0.0);
+    let mut poses: Vec<Pose> = Vec::with_capacity(count);
+    for (place, &position) in positions.iter().take(count).enumerate() {
+        if !free(world, &walls, &poses, position, 0.0) {
+            let drawn = position * (1.0 / config.scale);
+            let way_out = format!(
+                "a robot, {} m across in the world at scale {}, does not fit here between walls and the robots before it",
+                2.0 * BODY_RADIUS / config.scale,
+                config.scale
+            );
+            let value = format!("[{:?}, {:?}]", drawn.x, drawn.y);
+            return Err(InputError::new(format!("start.positions[{place}]"), value, way_out));
+        }
+        poses.push(Pose { position, heading: turned(stream.unit()) });
+    }
+    Ok(poses)
+}
+
 /// `count` robots at random places, with random headings, behind the first target's start: in the half of a ring around it
 /// that lies against its way, so that the swarm has yet to go around it; inside the region, clear of walls and of each
 /// other. The ring grows when they do not fit, and closes when the half plane is full. `None` when even the whole region,
 /// at random, has no room. Those at a base station stand farther from the target, with no wall in between, and from each other.
-pub(super) fn scattered(world: &Scenario, count: usize, at_base: bool, seed: u64) -> Option<Vec<Pose>> {
+fn scattered(world: &Scenario, count: usize, at_base: bool, seed: u64) -> Option<Vec<Pose>> {
     let mut stream = Stream::new(seed, Component::Placement, 0);
     let first = world.targets().iter().find(|target| target.presence().holds(0.0))?;
     let centre = first.path().at(0.0);

@@ -1,6 +1,7 @@
 mod base;
 mod faults;
 mod moving;
+mod starts;
 
 use super::*;
 use crate::brain::BrainError;

@@ -215,12 +215,17 @@ pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Re
         "scale" | "robots" => {
             let [east, north] = scenario.region();
             let fault = format!("--{} {}: {}", error.key(), error.value(), error.expected());
-            let error = InputError::new("region", format!("[{east:?}, {north:?}]"), fault);
-            let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
-            grn_input::locate(&text, error).in_file(path).into()
+            in_scenario(path, InputError::new("region", format!("[{east:?}, {north:?}]"), fault))
         }
+        key if key.starts_with("start") => in_scenario(path, error),
         _ => error.into(),
     })
+}
+
+/// A fault of a scenario's file, with its place there.
+fn in_scenario(path: &Path, error: InputError) -> Failure {
+    let text = grn_input::read_text(path, Found::Scenario).unwrap_or_default();
+    grn_input::locate(&text, error).in_file(path).into()
 }
 
 /// Runs a simulation with a progress bar and Ctrl-C.

@@ -5,7 +5,9 @@
 //! below are these.
 
 mod bearings;
+mod caging;
 mod clearance;
+mod flood;
 mod recovery;
 mod samples;
 mod whereabouts;
@@ -15,8 +17,10 @@ use crate::geometry::{Walls, length_squared};
 use crate::scenario::{Course, Scenario, Scene};
 use crate::trace::{Frame, Observer, metres};
 pub use bearings::Bearings;
+pub use caging::{CONTACT_WEIGHT, Caging, CagingMeter};
 use clearance::Clearance;
 use core::f64::consts::{PI, TAU};
+pub use flood::{ESCAPE, GUARDED};
 use grn_core::geometry::Point;
 use recovery::Forming;
 pub use recovery::Recovery;

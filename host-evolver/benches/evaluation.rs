@@ -2,10 +2,11 @@
 #![allow(clippy::expect_used, reason = "a benchmark that cannot go on ends")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::scenario::Scenario;
 use grn_core::geometry::Vector;
 use host_evolver::evaluation::{Evaluator, Model, World};
-use host_evolver::evolve::{Advance, Search, Settings};
+use host_evolver::evolve::{Advance, Search, Settings, Task};
 use host_evolver::model::published::PUBLISHED;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
@@ -36,8 +37,8 @@ fn f2_plain(world: &World, model: &Model) -> f64 {
     moments.sum::<f64>() / world.snapshots().len() as f64
 }
 
-fn evolve(world: &World) -> f64 {
-    let mut search = Search::new(world, Settings::default(), None).expect("usual settings are accepted");
+fn evolve(task: &Task) -> f64 {
+    let mut search = Search::new(task, Settings::default(), None).expect("usual settings are accepted");
     while search.advance(&AtomicBool::new(false), &|_| {}) == Advance::Generation {}
     search.state().history.last().and_then(|milestone| milestone.best_f2).unwrap_or(f64::NAN)
 }
@@ -69,8 +70,9 @@ fn ratio(world: &World) {
             published.name
         );
     }
+    let task = Task::in_one(world.scenario().clone(), SwarmConfig::default());
     let run = time_of(3, || {
-        black_box(evolve(world));
+        black_box(evolve(&task));
     })
     .as_secs_f64();
     println!("evolve: 4000 evaluations in {run:.3} s, {:.0} a second", 4000.0 / run);
@@ -85,7 +87,8 @@ fn objective(c: &mut Criterion) {
     let mut group = c.benchmark_group("slow");
     group.sample_size(10);
     group.bench_function("f2 plain", |b| b.iter(|| f2_plain(&world, black_box(&model))));
-    group.bench_function("evolve 4000 evaluations", |b| b.iter(|| evolve(&world)));
+    let task = Task::in_one(world.scenario().clone(), SwarmConfig::default());
+    group.bench_function("evolve 4000 evaluations", |b| b.iter(|| evolve(&task)));
     group.finish();
 }
 

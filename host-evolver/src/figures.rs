@@ -5,7 +5,7 @@ use crate::evolve::{FrontMember, Individual, Objectives};
 use crate::files::Contents;
 use crate::model::describe;
 use crate::model::notation::Digits;
-use crate::simulation::{ENOUGH_ACCURACY, PatternRuler, Simulation};
+use crate::simulation::{PatternRuler, Simulation};
 use firmware_sim::faults::{Absences, Fault};
 use firmware_sim::geometry::{Bounds, Polygon, Walls};
 use firmware_sim::lab::FaultKind;
@@ -261,7 +261,7 @@ pub fn run(simulation: &Simulation, trace: &Trace, scenario: &Scenario, blob: &B
         times: sampled.iter().map(|(time, _)| *time).collect(),
         gaps: gaps(&sampled, scenario.targets().len(), &service),
         radial_error: sampled.iter().map(|&(seconds, frame)| radial_error(seconds, frame)).collect(),
-        radial_band: radius.map(|radius| ENOUGH_ACCURACY * radius),
+        radial_band: None,
     })
 }
 

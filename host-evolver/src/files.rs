@@ -46,8 +46,8 @@ pub fn write_folder(place: &Path, fill: impl FnOnce(&Path) -> Result<(), FileErr
 ///
 /// # Errors
 /// What the operating system says.
-pub fn remove_unfinished(lock: &FolderLock, below: &[&str]) -> Result<(), FileError> {
-    remove_unfinished_in(lock.folder(), &|name| below.contains(&name))
+pub fn remove_unfinished(lock: &FolderLock, below: &[impl AsRef<str>]) -> Result<(), FileError> {
+    remove_unfinished_in(lock.folder(), &|name| below.iter().any(|folder| folder.as_ref() == name))
 }
 
 fn remove_unfinished_in(folder: &Path, goes_into: &dyn Fn(&str) -> bool) -> Result<(), FileError> {

@@ -3,6 +3,8 @@
 use crate::simulation::{Setting, Simulation, SimulationError, simulate_in};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::run_seed;
+#[cfg(doc)]
+use firmware_sim::metrics::Caging;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
 use grn_core::scalar::NumberType;
@@ -23,8 +25,20 @@ pub struct Reality {
     pub number: u64,
     /// Whether every bar was met.
     pub works: bool,
-    /// When the swarm had formed, seconds from the start, if it did.
+    /// Share of the time after settling in which targets were caged.
+    pub caged_share: f64,
+    /// The ring error of the robots, see [`Caging::pen`].
+    pub pen: f64,
+    /// Share of robots' time after settling within d_min and d_max of a target.
+    pub in_band_share: f64,
+    /// Share of robots' time in touch with something.
+    pub contact_share: f64,
+    /// Robots off the pattern at the end, as a share.
+    pub lost_share: f64,
+    /// When all targets were caged for the first time and stayed so for two seconds; seconds from the start.
     pub formed_at_s: Option<f64>,
+    /// J, see [`Caging::cost`].
+    pub cost: f64,
     /// Share of the time after forming in which every target was encircled; 0 if the swarm never formed.
     pub encircled_share: f64,
     /// Median radial error as a share of the ring's radius; `None` if it is unknown or the swarm never formed.
@@ -45,12 +59,18 @@ pub struct Reality {
 
 impl Reality {
     fn of(number: u64, simulation: &Simulation) -> Reality {
-        let metrics = &simulation.metrics;
+        let (metrics, caging) = (&simulation.metrics, &simulation.caging);
         let last = metrics.recoveries.last();
         Reality {
             number,
             works: simulation.verdict().works(),
-            formed_at_s: metrics.formed_at_s,
+            caged_share: caging.caged_share,
+            pen: caging.pen,
+            in_band_share: caging.in_band_share,
+            contact_share: caging.contact_share,
+            lost_share: simulation.lost_share(),
+            formed_at_s: caging.formed_at_s,
+            cost: caging.cost(),
             encircled_share: metrics.encircled_share.unwrap_or(0.0),
             radial_error_share: simulation.radial_error_share(),
             reformed_at_s: last.and_then(|last| last.reformed_at_s),
@@ -62,13 +82,10 @@ impl Reality {
         }
     }
 
-    /// Worse ones first: those that do not work, then those that encircle less, then those that are farther from the pattern.
+    /// Worse ones first: those that do not work, then those that cost more.
     fn by_badness(&self, other: &Reality) -> Ordering {
-        let error = |reality: &Reality| reality.radial_error_share.unwrap_or(f64::INFINITY);
         let works = self.works.cmp(&other.works);
-        let encircled = self.encircled_share.total_cmp(&other.encircled_share);
-        let farther = error(other).total_cmp(&error(self));
-        works.then(encircled).then(farther).then(self.number.cmp(&other.number))
+        works.then(other.cost.total_cmp(&self.cost)).then(self.number.cmp(&other.number))
     }
 }
 
@@ -88,6 +105,17 @@ impl Robustness {
     /// The 95 % interval (Wilson) of the share in which it works.
     pub fn interval(&self) -> (f64, f64) {
         wilson(self.works(), self.realities.len())
+    }
+
+    /// The mean of a measure.
+    pub fn mean(&self, measure: impl Fn(&Reality) -> f64) -> f64 {
+        self.realities.iter().map(measure).sum::<f64>() / self.realities.len() as f64
+    }
+
+    /// The mean time to form in those realities in which the swarm formed.
+    pub fn mean_formed_at_s(&self) -> Option<f64> {
+        let times: Vec<f64> = self.realities.iter().filter_map(|reality| reality.formed_at_s).collect();
+        (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64)
     }
 
     /// Whether it works in at least [`ENOUGH_REALITIES`] of them.
@@ -154,7 +182,13 @@ mod tests {
         Reality {
             number,
             works,
+            caged_share: encircled_share,
+            pen: 0.05,
+            in_band_share: 0.9,
+            contact_share: 0.0,
+            lost_share: 0.0,
             formed_at_s: Some(1.0),
+            cost: 1.05 - encircled_share,
             encircled_share,
             radial_error_share: error,
             reformed_at_s: None,
@@ -180,7 +214,7 @@ mod tests {
         assert_eq!(format!("{:.1} to {:.1} %", low * 100.0, high * 100.0), "91.5 to 99.0 %");
         assert!(robustness.is_enough());
         let worst: Vec<u64> = robustness.worst(4).iter().map(|reality| reality.number).collect();
-        assert_eq!(worst, [7, 50, 3, 100]);
+        assert_eq!(worst, [7, 50, 3, 1]);
         assert_eq!(robustness.quantile(0.5, |reality| reality.encircled_share), Some(1.0));
         assert_eq!(robustness.quantile(0.01, |reality| reality.encircled_share), Some(0.4));
     }

@@ -126,11 +126,12 @@ fn number<T: FromStr>(
 
 fn history_csv(history: &[Milestone]) -> Vec<u8> {
     let line = |milestone: &Milestone| {
-        let Milestone { evaluations, best_f2, feasible, front, hypervolume } = milestone;
-        let best_f2 = best_f2.map(|f2| f2.to_string()).unwrap_or_default();
-        [evaluations.to_string(), best_f2, feasible.to_string(), front.to_string(), hypervolume.to_string()]
+        let Milestone { evaluations, best_f2, best_cost, feasible, front, hypervolume } = milestone;
+        let known = |value: &Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
+        let counts = [feasible.to_string(), front.to_string(), hypervolume.to_string()];
+        [evaluations.to_string(), known(best_f2), known(best_cost)].into_iter().chain(counts).collect::<Vec<_>>()
     };
-    files::csv(["evaluations", "best_f2", "feasible", "front", "hypervolume"], history.iter().map(line))
+    files::csv(["evaluations", "best_f2", "best_cost", "feasible", "front", "hypervolume"], history.iter().map(line))
 }
 
 /// The history in a run's folder.

@@ -8,8 +8,8 @@ mod manifest;
 
 pub use manifest::Manifest;
 
-use crate::evaluation::{Model, World};
-use crate::evolve::{FrontMember, Search, State};
+use crate::evaluation::Model;
+use crate::evolve::{FrontMember, Search, State, Task};
 use crate::figures::{self, Pictures};
 use crate::files::{self, Contents, FileError, FolderLock, Ledger, Owner};
 use crate::model::deploy;
@@ -20,9 +20,17 @@ use manifest::MANIFEST;
 use std::path::{Path, PathBuf};
 
 const CHECKPOINT: &str = "checkpoint.json";
-const SCENARIO: &str = "scenario.toml";
-/// Folders in a run's folder.
-const BELOW: [&str; 2] = ["front", "simulation"];
+
+/// What belongs to one of a run's worlds: `scenario.toml`, or of several `scenario-1.toml`, `scenario-2.toml`, ….
+pub fn of_world(stem: &str, place: usize, worlds: usize, ending: &str) -> String {
+    if worlds == 1 { format!("{stem}{ending}") } else { format!("{stem}-{}{ending}", place + 1) }
+}
+
+/// Folders in the folder of a run in so many worlds.
+fn below(worlds: usize) -> Vec<String> {
+    let simulations = (0..worlds).map(|place| of_world("simulation", place, worlds, ""));
+    std::iter::once("front".to_owned()).chain(simulations).collect()
+}
 
 /// The folder of one run, which nobody else writes meanwhile.
 pub struct RunFolder {
@@ -47,7 +55,7 @@ impl RunFolder {
     ///
     /// # Errors
     /// A folder that holds a run or something else already, that somebody else writes, or that cannot be written.
-    pub fn create(folder: &Path, command: &str, manifest: Manifest, scenario: &Scenario) -> Result<Self, FileError> {
+    pub fn create(folder: &Path, command: &str, manifest: Manifest, task: &Task) -> Result<Self, FileError> {
         let lock = FolderLock::take(folder, command)?;
         let path = folder.join(MANIFEST);
         if path.exists() {
@@ -61,11 +69,16 @@ impl RunFolder {
             let fault = format!("holds other things ({name}); choose an empty or new folder with --out");
             return Err(FileError::new(folder, fault));
         }
-        files::remove_unfinished(&lock, &BELOW)?;
-        files::probe_folder(&lock, &["front/00-31-nodes.grn".into(), "simulation/metrics.json".into()])?;
+        let below = below(task.worlds().len());
+        files::remove_unfinished(&lock, &below)?;
+        let inside = below.iter().map(|folder| match folder.as_str() {
+            "front" => PathBuf::from("front/00-31-nodes.grn"),
+            simulation => Path::new(simulation).join("metrics.json"),
+        });
+        files::probe_folder(&lock, &inside.collect::<Vec<_>>())?;
         let run = RunFolder { lock, manifest, notices: Vec::new() };
         run.write_manifest(&run.manifest)?;
-        files::write(&run.path(SCENARIO), scenario.to_toml())?;
+        run.write_scenarios(task)?;
         Ok(run)
     }
 
@@ -79,21 +92,21 @@ impl RunFolder {
         folder: &Path,
         command: &str,
         manifest: Manifest,
-        scenario: &Scenario,
+        task: &Task,
     ) -> Result<(Self, Option<State>), FileError> {
         if !folder.join(MANIFEST).exists() {
             let is_leftover = folder.is_dir()
                 && !files::entries(folder)?.is_empty()
                 && files::first_foreign(folder, &|_| false)?.is_none();
             if is_leftover {
-                return Ok((RunFolder::create(folder, command, manifest, scenario)?, None));
+                return Ok((RunFolder::create(folder, command, manifest, task)?, None));
             }
             let way_out = "no run is here to go on with; mend --out, or leave out --resume to begin one";
             return Err(FileError::new(folder, way_out));
         }
         let lock = FolderLock::take(folder, command)?;
         let found = manifest.matching(folder)?;
-        files::remove_unfinished(&lock, &BELOW)?;
+        files::remove_unfinished(&lock, &below(task.worlds().len()))?;
         let path = folder.join(CHECKPOINT);
         let identity = found.identity();
         let state = match path.exists() {
@@ -111,7 +124,7 @@ impl RunFolder {
         }
         let run = RunFolder { lock, manifest: Manifest { files: found.files, ..manifest }, notices };
         run.write_manifest(&run.manifest)?;
-        files::write(&run.path(SCENARIO), scenario.to_toml())?;
+        run.write_scenarios(task)?;
         // Whoever has changed nothing but the ends of its lines gets the same bytes as others.
         state.iter().try_for_each(|state| checkpoint::save(&path, &identity, state))?;
         Ok((run, state))
@@ -131,6 +144,10 @@ impl RunFolder {
         files::write(&self.path(MANIFEST), files::json(manifest))
     }
 
+    fn write_scenarios(&self, task: &Task) -> Result<(), FileError> {
+        scenarios(task).iter().try_for_each(|(name, text)| files::write(&self.path(name), text))
+    }
+
     /// Saves the state after a generation. Not that after a last one which the budget cuts short: from there the run could
     /// not be extended.
     ///
@@ -147,23 +164,24 @@ impl RunFolder {
     ///
     /// # Errors
     /// A model that no blob can hold.
-    pub fn results(&self, search: &Search<'_>, world: &World, scale: f32) -> Result<Results, FileError> {
-        let front = search.front();
-        let morphogen = world.scenario().morphogen();
-        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, scale);
+    pub fn results(&self, search: &Search<'_>, front: &[FrontMember]) -> Result<Results, FileError> {
+        let task = search.task();
+        let first = task.worlds()[0].scenario();
+        let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &first.morphogen(), task.scale());
         let State { history, .. } = search.state();
-        let (mut contents, knee) =
-            results::contents(&search.settings().objectives, &front, history, blob_of, "front/")?;
-        contents.insert(SCENARIO.into(), world.scenario().to_toml().into_bytes());
+        let (mut contents, knee) = results::contents(&search.settings().objectives, front, history, blob_of, "front/")?;
+        contents.extend(scenarios(task).into_iter().map(|(name, text)| (name, text.into_bytes())));
         let mut pictures = Pictures::default();
-        pictures.add(
-            "pareto.svg",
-            figures::front(&search.settings().objectives, &front, &search.others(), &world.scenario().ring()),
-        );
+        pictures
+            .add("pareto.svg", figures::front(&search.settings().objectives, front, &search.others(), &first.ring()));
         pictures.add("tree.svg", Ok(figures::tree(&knee.network)));
         pictures.add("grn.svg", figures::grn(&knee.network));
-        if let Ok(model) = Model::new(&knee.network, world.scenario().morphogen().level) {
-            pictures.add("pattern.svg", figures::pattern(world, &model));
+        if let Ok(model) = Model::new(&knee.network, first.morphogen().level) {
+            let worlds = task.worlds();
+            for (place, world) in worlds.iter().enumerate() {
+                let name = of_world("pattern", place, worlds.len(), ".svg");
+                pictures.add(&name, figures::pattern(world, &model));
+            }
         }
         contents.extend(pictures.contents);
         let not_drawn = pictures.not_drawn;
@@ -191,4 +209,12 @@ impl RunFolder {
         self.manifest.files = self.manifest.files.publish(self.lock.folder(), contents, write)?;
         Ok(())
     }
+}
+
+/// The worlds' files and their canonical texts.
+fn scenarios(task: &Task) -> Vec<(String, String)> {
+    let count = task.worlds().len();
+    let file =
+        |(place, scenario): (usize, &Scenario)| (of_world("scenario", place, count, ".toml"), scenario.to_toml());
+    task.scenarios().enumerate().map(file).collect()
 }

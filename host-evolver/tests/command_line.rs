@@ -33,7 +33,7 @@ fn assert_refused(output: &Output, words: &[&str]) {
 
 fn evolve(folder: &Path, more: &[&str]) -> Command {
     let mut command = grn();
-    command.arg("evolve").arg(channel()).arg("--out").arg(folder).args(more);
+    command.arg("evolve").arg(channel()).arg("--paper").arg("--out").arg(folder).args(more);
     command.stderr(Stdio::piped()).stdout(Stdio::piped());
     command
 }

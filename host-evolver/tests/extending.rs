@@ -7,7 +7,7 @@ use support::*;
 
 fn evaluations(folder: &Path, evaluations: usize, more: &[&str]) -> std::process::Command {
     let mut command = grn();
-    command.arg("evolve").arg(channel()).arg("--out").arg(folder);
+    command.arg("evolve").arg(channel()).arg("--paper").arg("--out").arg(folder);
     command.arg("--evaluations").arg(evaluations.to_string()).args(more);
     command
 }
@@ -31,6 +31,26 @@ fn a_run_is_extended_to_the_bytes_of_one_that_was_as_long_from_the_start() -> Ou
         assert_answered(&evaluations(&steps, budget, &["--resume"]).output()?);
     }
     assert_eq!(different(&long, &steps)?, Vec::<PathBuf>::new(), "extended in steps");
+    Ok(())
+}
+
+#[test]
+fn a_run_with_trials_is_extended_likewise() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    let tried = |folder: &str, evaluations: &str, more: &[&str]| {
+        let mut command = grn();
+        command.arg("evolve").arg(repository("scenarios/open.toml")).arg("--out").arg(scratch.path().join(folder));
+        command.args(["--realities", "2", "--evaluations", evaluations]).args(more);
+        command
+    };
+    assert_answered(&tried("long", "2100", &["--threads", "2"]).output()?);
+    assert_answered(&tried("steps", "900", &["--threads", "1"]).output()?);
+    assert_answered(&tried("steps", "2100", &["--resume"]).output()?);
+    let [long, steps] = ["long", "steps"].map(|folder| scratch.path().join(folder));
+    assert_eq!(different(&long, &steps)?, Vec::<PathBuf>::new());
+    let front = std::fs::read_to_string(long.join("front.csv"))?;
+    assert!(front.starts_with("nodes,f2,closed-loop,violation,knee,expression,blob\n"), "{front}");
+    assert_eq!(front.matches("parsimony").count(), 1, "{front}");
     Ok(())
 }
 

@@ -79,7 +79,7 @@ fn runs_begun_together_without_out_choose_different_folders() -> Outcome {
     let scratch = tempfile::tempdir()?;
     let start = || {
         let mut command = grn();
-        command.arg("evolve").arg(channel()).args(["--evaluations", "800", "--threads", "1"]);
+        command.arg("evolve").arg(channel()).args(["--paper", "--evaluations", "800", "--threads", "1"]);
         command.current_dir(scratch.path()).spawn()
     };
     let children: Vec<Child> = (0..4).map(|_| start()).collect::<Result<_, _>>()?;

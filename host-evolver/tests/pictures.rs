@@ -21,7 +21,8 @@ fn a_run_without_a_feasible_model_says_no_and_shows_its_front() -> Outcome {
     let scratch = tempfile::tempdir()?;
     let (world, out) = (scratch.path().join("narrow.toml"), scratch.path().join("out"));
     std::fs::write(&world, too_narrow()?)?;
-    let output = grn().arg("evolve").arg(&world).args(["--evaluations", "800", "--out"]).arg(&out).output()?;
+    let output =
+        grn().arg("evolve").arg(&world).args(["--paper", "--evaluations", "800", "--out"]).arg(&out).output()?;
     assert_code(&output, 1);
     assert!(text(&output.stdout).contains("infeasible: "), "{}", text(&output.stdout));
     let picture = std::fs::read_to_string(out.join("pareto.svg"))?;

@@ -38,7 +38,7 @@ fn an_infeasible_run_ends_with_one_and_its_reason() -> Outcome {
     let narrow = edited(WORLD, "[6.0, 14.0], [14.0, 14.0]", "[6.0, 10.04], [14.0, 10.04]");
     let narrow = edited(&narrow, "[14.0, 6.0], [6.0, 6.0]", "[14.0, 9.96], [6.0, 9.96]");
     std::fs::write(desk.path("world.toml"), narrow)?;
-    let output = desk.grn(&["evolve", "world.toml", "--out", "o", "--evaluations", "800"])?;
+    let output = desk.grn(&["evolve", "world.toml", "--out", "o", "--paper", "--evaluations", "800"])?;
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert_eq!(output.status.code(), Some(1), "{said}{}", String::from_utf8_lossy(&output.stderr));
     let line = said.lines().find(|line| line.starts_with("infeasible: ")).unwrap_or_default();

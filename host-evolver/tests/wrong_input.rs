@@ -249,7 +249,7 @@ fn wrong_files() -> Outcome {
 #[test]
 fn wrong_options() -> Outcome {
     let desk = Desk::new()?;
-    let cases: [(&[&str], &[&str]); 19] = [
+    let cases: [(&[&str], &[&str]); 23] = [
         (&["evolve", "world.toml", "--threads", "100000"], &["--threads", "100000", "cores"]),
         (&["evolve", "world.toml", "--threads", "0"], &["--threads", "from 1"]),
         (&["campaign", "campaign.toml", "--threads", "100000"], &["--threads", "100000", "cores"]),
@@ -261,6 +261,10 @@ fn wrong_options() -> Outcome {
         (&["evolve", "world.toml", "--scale", "10"], &["world.toml:2:10: region", "--scale 10", "scale up to 1.5"]),
         (&["evolve", "world.toml", "--scale", "0.01"], &["world.toml:2:10: region", "--robots 12", "no room"]),
         (&["evolve", "world.toml", "--seed", "1.5"], &["--seed", "1.5"]),
+        (&["evolve", "world.toml", "--objectives", "nodes,loop"], &["--objectives", "loop", "closed-loop, worst"]),
+        (&["evolve", "world.toml", "--constraints", "islands"], &["--constraints", "islands", "no-islands"]),
+        (&["evolve", "world.toml", "--realities", "0"], &["--realities", "1 to 1000"]),
+        (&["evolve", "world.toml", "--paper", "--realities", "3"], &["--paper", "--realities"]),
         (&["simulate", "blob.grn", "world.toml", "--robots", "20000"], &["--robots", "20000", "1 to 10000"]),
         (&["simulate", "blob.grn", "world.toml", "--robots", "0"], &["--robots", "0", "1 to 10000"]),
         (&["simulate", "blob.grn", "world.toml", "--scale", "1e9"], &["--scale", "1e9", "0.01 to 10"]),
@@ -324,12 +328,12 @@ fn negative_numbers() -> Outcome {
 #[test]
 fn options_of_emulators_without_emulators() -> Outcome {
     let desk = Desk::new()?;
-    let simulate = ["simulate", "blob.grn", "world.toml", "--robots", "3"];
+    let simulate = ["simulate", "blob.grn", "world.toml", "--robots", "12"];
     let cases: [(&[&str], &[&str]); 5] = [
         (&["--image", "blob.grn"], &["--image blob.grn", "add --target qemu, or leave it out"]),
         (&["--emulated", "2"], &["--emulated 2", "add --target qemu, or leave it out"]),
         (&["--target", "native", "--emulated", "2"], &["--emulated 2", "add --target qemu, or leave it out"]),
-        (&["--target", "qemu", "--emulated", "4"], &["--emulated 4", "the number of robots, 3"]),
+        (&["--target", "qemu", "--emulated", "13"], &["--emulated 13", "the number of robots, 12"]),
         (&["--target", "qemu", "--image", "blob.grn"], &["blob.grn is no image", "cargo xtask target"]),
     ];
     let cases = if cfg!(unix) { &cases[..] } else { &cases[..3] };

@@ -10,6 +10,8 @@ from typing import Callable, Mapping, Optional, Sequence, Union
 from . import _native
 from ._laboratory import assignments
 
+_World = Union[_native.Scenario, str, "PathLike[str]"]
+
 
 @dataclass(frozen=True)
 class Evolution:
@@ -31,12 +33,15 @@ class Evolution:
 
 
 def evolve(
-    scenario: Union[_native.Scenario, str, PathLike[str]],
+    scenario: Union[_World, Sequence[_World]],
     *,
     out: Union[str, PathLike[str]],
     evaluations: int = 4000,
     seed: int = 1,
-    objectives: Sequence[str] = ("nodes", "f2"),
+    paper: bool = False,
+    objectives: Optional[Sequence[str]] = None,
+    constraints: Optional[Sequence[str]] = None,
+    realities: Optional[int] = None,
     motifs: str = "all",
     scale: float = 0.25,
     lab: Union[str, PathLike[str]] = "ideal",
@@ -50,26 +55,34 @@ def evolve(
     Ctrl-C, or an exception of `progress`, stops it; the generations that are done are kept, and `resume=True` goes on.
 
     Args:
-        scenario: the world to evolve for, or the path of its file.
+        scenario: the world to evolve for, or the path of its file; or several of them: a model is worth the mean of what it is in
+            each.
         out: folder of the run, new or empty if it is not to be resumed.
         evaluations: budget, evaluations of f2; larger than before it extends a run that is resumed.
         seed: of everything random; equal seeds give equal files.
-        objectives: what to minimise, two or three names.
+        paper: the paper's algorithm to the letter: nodes and f2, enclosed with a clearance of 0.05 m, without trials.
+        objectives: what to minimise, two or three of "nodes", "f2", "closed-loop" and "worst"; "nodes" and "closed-loop" if not given.
+        constraints: what patterns must keep to, of "enclosed", "clearance" and "no-islands"; all of them if not given.
+        realities: trials of each model on the front; 16 if not given.
         motifs: what to build with, "all" or "binary".
         scale: world metres per scenario metre of the blobs.
-        lab: the laboratory that the knee is simulated in, a name or a file; set replaces some of its values.
+        lab: the laboratory that models are tried and the knee is simulated in, a name or a file; set replaces some of its values.
         threads: how many; all cores if it is not given. The result does not depend on it.
         resume: continue the run in the folder.
         progress: called after every generation.
     """
     if threads is not None and not 1 <= threads <= 1024:
         raise _native.GrnError(f"threads = {threads}: must be 1 to 1024")
+    worlds = [scenario] if isinstance(scenario, (_native.Scenario, str, PathLike)) else list(scenario)
     found = _native.evolve(
-        scenario,
+        worlds,
         out=out,
         evaluations=evaluations,
         seed=seed,
-        objectives=list(objectives),
+        paper=paper,
+        objectives=None if objectives is None else list(objectives),
+        constraints=None if constraints is None else list(constraints),
+        realities=realities,
         motifs=motifs,
         scale=scale,
         lab=fspath(lab),

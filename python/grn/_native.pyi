@@ -133,6 +133,8 @@ class Progress:
     @property
     def best_f2(self) -> Optional[float]: ...
     @property
+    def best_cost(self) -> Optional[float]: ...
+    @property
     def feasible(self) -> int: ...
     @property
     def front(self) -> int: ...
@@ -173,12 +175,15 @@ def measure(
     ticks_per_second: int,
 ) -> Run: ...
 def evolve(
-    scenario: Union[Scenario, _Path],
+    scenarios: Sequence[Union[Scenario, _Path]],
     *,
     out: _Path,
     evaluations: int,
     seed: int,
-    objectives: Sequence[str],
+    paper: bool,
+    objectives: Optional[Sequence[str]],
+    constraints: Optional[Sequence[str]],
+    realities: Optional[int],
     motifs: str,
     scale: float,
     lab: str,

@@ -9,11 +9,11 @@ use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario;
 use firmware_sim::swarm;
 use grn_core::scalar::NumberType;
-use host_evolver::evaluation::World;
-use host_evolver::evolve::{Advance, Milestone, Objectives, Search, Settings};
+use host_evolver::evaluation::{ConstraintNames, World};
+use host_evolver::evolve::{Advance, Milestone, Objectives, Search, Settings, Task};
 use host_evolver::model::variation::MotifSet;
 use host_evolver::record;
-use host_evolver::run::{Manifest, RunFolder};
+use host_evolver::run::{Manifest, RunFolder, of_world};
 use host_evolver::simulation::{self, check_length, usual_config};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
@@ -31,6 +31,8 @@ pub struct Progress {
     budget: usize,
     /// Best f2 of a feasible model, or None.
     best_f2: Option<f64>,
+    /// Least mean cost J of a feasible model in its trials, or None.
+    best_cost: Option<f64>,
     /// Feasible models in the population.
     feasible: usize,
     /// Models on the feasible front.
@@ -63,7 +65,7 @@ pub struct Found {
 
 /// Everything that a run is made from.
 struct Order {
-    scenario: scenario::Scenario,
+    scenarios: Vec<scenario::Scenario>,
     settings: Settings,
     scale: f32,
     lab: Laboratory,
@@ -95,15 +97,20 @@ impl<E: std::error::Error + 'static> From<E> for Ended {
 
 /// Evolves controllers for a scenario into a folder, and simulates the knee.
 #[pyfunction]
-#[pyo3(signature = (scenario, *, out, evaluations, seed, objectives, motifs, scale, lab, set, threads, resume, progress))]
+#[pyo3(signature = (
+    scenarios, *, out, evaluations, seed, paper, objectives, constraints, realities, motifs, scale, lab, set, threads, resume, progress
+))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword of its own in Python")]
 pub fn evolve(
     py: Python<'_>,
-    scenario: GivenScenario<'_>,
+    scenarios: Vec<GivenScenario<'_>>,
     out: PathBuf,
     evaluations: usize,
     seed: u64,
-    objectives: Vec<String>,
+    paper: bool,
+    objectives: Option<Vec<String>>,
+    constraints: Option<Vec<String>>,
+    realities: Option<usize>,
     motifs: &str,
     scale: f32,
     lab: String,
@@ -112,15 +119,28 @@ pub fn evolve(
     resume: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
-    let scenario = scenario.get()?;
-    let objectives = Objectives::try_from(objectives).map_err(about("objectives"))?;
+    let scenarios = scenarios.into_iter().map(GivenScenario::get).collect::<PyResult<Vec<_>>>()?;
+    if paper && (objectives.is_some() || constraints.is_some() || realities.is_some()) {
+        return Err(refused("paper = True says what objectives, constraints and realities are: leave these out"));
+    }
+    let usual = if paper { Settings::default() } else { Settings::adaptive() };
+    let objectives = objectives.map(Objectives::try_from).transpose().map_err(about("objectives"))?;
+    let constraints = constraints.map(ConstraintNames::try_from).transpose().map_err(about("constraints"))?;
     let motifs = match motifs {
         "all" => MotifSet::All,
         "binary" => MotifSet::Binary,
         other => return Err(refused(format_args!("motifs = {other:?}: all or binary is needed"))),
     };
-    let settings = Settings { seed, evaluations, motifs, objectives, ..Settings::default() };
-    let order = Order { scenario, settings, scale, lab: found(&lab, &set)?, out, resume };
+    let settings = Settings {
+        seed,
+        evaluations,
+        motifs,
+        objectives: objectives.unwrap_or(usual.objectives),
+        constraints: constraints.unwrap_or(usual.constraints),
+        realities: realities.unwrap_or(usual.realities),
+        ..usual
+    };
+    let order = Order { scenarios, settings, scale, lab: found(&lab, &set)?, out, resume };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(about("threads"))?;
     let tell =
         |py: Python<'_>, told: Progress| progress.as_ref().map_or(Ok(()), |call| call.call1(py, (told,)).map(drop));
@@ -137,20 +157,22 @@ pub fn evolve(
 impl Order {
     /// Does what `grn evolve` does: checks everything, takes the folder, searches, writes, simulates the knee.
     fn carry_out(&self, stop: &AtomicBool, news: &Sender<Progress>) -> Result<Brought, Ended> {
-        let Order { scenario, settings, scale, lab, out, resume } = self;
+        let Order { scenarios, settings, scale, lab, out, resume } = self;
         let config = usual_config(*scale, lab.clone());
-        swarm::check(scenario, &config)?;
-        check_length(scenario, &config)?;
-        let manifest = Manifest::new(scenario, settings.clone(), *scale, lab.clone());
-        let world = World::new(scenario.clone());
-        Search::new(&world, settings.clone(), None)?;
+        for scenario in scenarios {
+            swarm::check(scenario, &config)?;
+            check_length(scenario, &config)?;
+        }
+        let task = Task::new(scenarios.clone(), config)?;
+        let manifest = Manifest::new(&task, settings.clone());
+        Search::new(&task, settings.clone(), None)?;
         let (mut run, state) = if *resume {
-            RunFolder::resume(out, "grn.evolve in Python", manifest, scenario)?
+            RunFolder::resume(out, "grn.evolve in Python", manifest, &task)?
         } else {
-            (RunFolder::create(out, "grn.evolve in Python", manifest, scenario)?, None)
+            (RunFolder::create(out, "grn.evolve in Python", manifest, &task)?, None)
         };
         let mut notices = run.notices().to_vec();
-        let mut search = Search::new(&world, settings.clone(), state)?;
+        let mut search = Search::new(&task, settings.clone(), state)?;
         loop {
             match search.advance(stop, &|_| ()) {
                 Advance::Generation => run.save(search.state())?,
@@ -160,29 +182,33 @@ impl Order {
             // Nobody listens any more only when the caller has gone.
             let _ = search.state().history.last().map(|milestone| news.send(self.progress(milestone)));
         }
-        let feasible = search.front().iter().all(|member| member.is_feasible());
-        let results = run.results(&search, &world, *scale)?;
+        let front = search.confirmed_front(stop).ok_or(Ended::Stopped)?;
+        let feasible = front.iter().all(|member| member.is_feasible());
+        let results = run.results(&search, &front)?;
         let (mut contents, knee) = (results.contents, results.knee);
         notices.extend(results.not_drawn);
         run.add(&contents)?;
-        let mut works = false;
-        if feasible {
+        let mut works = feasible;
+        let tried = if feasible { task.worlds() } else { &[] };
+        for (place, scenario) in tried.iter().map(World::scenario).enumerate() {
             let watch =
                 |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-            let mut recorder = record::recorder(scenario, &config);
-            let simulation = simulation::simulate(&knee, scenario, config, NumberType::F32, &mut recorder, watch)?;
+            let mut recorder = record::recorder(scenario, task.swarm());
+            let (config, number) = (task.swarm().clone(), NumberType::F32);
+            let simulation = simulation::simulate(&knee, scenario, config, number, &mut recorder, watch)?;
             let simulation = simulation.ok_or(Ended::Stopped)?;
-            works = simulation.verdict().works();
+            works &= simulation.verdict().works();
             let (recorded, not_drawn) = record::contents(&simulation, recorder.trace(), scenario, &knee);
             notices.extend(not_drawn);
-            contents.extend(recorded.into_iter().map(|(name, content)| (format!("simulation/{name}"), content)));
+            let below = of_world("simulation", place, tried.len(), "");
+            contents.extend(recorded.into_iter().map(|(name, content)| (format!("{below}/{name}"), content)));
         }
         run.finish(&contents)?;
         Ok(Brought { knee, feasible, works, notices })
     }
 
     fn progress(&self, milestone: &Milestone) -> Progress {
-        let &Milestone { evaluations, best_f2, feasible, front, hypervolume } = milestone;
-        Progress { evaluations, budget: self.settings.evaluations, best_f2, feasible, front, hypervolume }
+        let &Milestone { evaluations, best_f2, best_cost, feasible, front, hypervolume } = milestone;
+        Progress { evaluations, budget: self.settings.evaluations, best_f2, best_cost, feasible, front, hypervolume }
     }
 }

@@ -17,6 +17,7 @@ use grn_core::scalar::NumberType;
 use host_evolver::files;
 use host_evolver::realities;
 use host_evolver::record;
+use host_evolver::simulation::verdict::time_to_form_s;
 use host_evolver::simulation::{self, Marks, PatternRuler, Simulation, check_length, meter, usual_config};
 use pyo3::prelude::*;
 use serde_json::json;
@@ -128,10 +129,20 @@ pub fn measure(
     let faults = FaultPlan::default();
     let marks = Marks::of(scenario.scaled(config.scale), &config, &faults);
     let mut meter = meter(&ruler, &marks, ticks_per_second);
+    let mut caging = marks.caging_meter(ticks_per_second);
     let mut recorder = Recorder::new(header.clone(), usize::MAX);
-    py.detach(|| replay(&header, positions_um, targets_um, contacts, &mut (&mut meter, &mut recorder)))?;
-    let (metrics, ring_radius_m) = (meter.metrics(), ruler.ring_radius());
-    let (blob, number) = (blob.identity(), NumberType::F32);
-    let simulation = Simulation { metrics, faults, base: None, ring_radius_m, blob, number, config };
+    let mut observers = (&mut (&mut meter, &mut caging), &mut recorder);
+    py.detach(|| replay(&header, positions_um, targets_um, contacts, &mut observers))?;
+    let simulation = Simulation {
+        caging: caging.caging(),
+        metrics: meter.metrics(),
+        time_to_form_s: time_to_form_s(&config, scenario.scaled(config.scale).ring()),
+        faults,
+        base: None,
+        ring_radius_m: ruler.ring_radius(),
+        blob: blob.identity(),
+        number: NumberType::F32,
+        config,
+    };
     Ok(Run { simulation, trace: recorder.into_trace(), scenario })
 }

@@ -41,7 +41,7 @@ def test_an_evolution_leaves_the_files_of_the_command_line(evolved, grn_command,
 
 def test_progress_is_told_after_every_generation(evolved):
     _, found, heard = evolved
-    assert [one.evaluations for one in heard] == [800, 1600]
+    assert [one.evaluations for one in heard] == [800, 1280]
     assert all(one.budget == BUDGET and one.front >= 0 for one in heard)
     assert not found.notices
 
@@ -50,7 +50,7 @@ def test_a_front_opens_in_pandas(evolved):
     folder, found, _ = evolved
     front = grn.read_front(folder / "ours")
     assert {"nodes", "f2", "violation", "knee", "expression", "blob"} <= set(front.columns)
-    assert front["nodes"].is_monotonic_increasing and front["f2"].is_monotonic_decreasing
+    assert front["nodes"].is_monotonic_increasing and front["closed-loop"].is_monotonic_decreasing
     assert found.knee in [grn.Blob.load(path) for path in front["blob"]]
     assert grn.Blob.load(front["blob"][0]).evaluate(folder / "ours" / "scenario.toml").f2 == front["f2"][0]
     with pytest.raises(grn.GrnError, match="is not there"):
@@ -113,6 +113,9 @@ def test_ctrl_c_interrupts_and_keeps_what_was_done(channel, tmp_path):
         ({"objectives": ["nodes"]}, "two or three"),
         ({"objectives": ["nodes", "speed"]}, "speed"),
         ({"motifs": "some"}, "all or binary"),
+        ({"constraints": ["islands"]}, "islands"),
+        ({"realities": 0}, "realities = 0"),
+        ({"paper": True, "realities": 3}, "paper"),
         ({"evaluations": 10}, "the first generation alone takes 800"),
         ({"scale": 1000.0}, "scale"),
         ({"threads": 0}, "threads = 0"),

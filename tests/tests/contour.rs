@@ -1,11 +1,12 @@
 //! The objective's fast contours against plain marching squares on a 0.05 m grid.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use firmware_sim::config::SwarmConfig;
 use firmware_sim::geometry::{Bounds, nearest_on_segment};
 use firmware_sim::scenario::Scenario;
 use grn_core::geometry::{Point, Vector};
 use host_evolver::evaluation::{Contours, Evaluator, Model, Snapshot, Tracer, World};
-use host_evolver::evolve::{Advance, Search, Settings};
+use host_evolver::evolve::{Advance, Search, Settings, Task};
 use host_evolver::model::published::PUBLISHED;
 use plain::Plain;
 use std::sync::atomic::AtomicBool;
@@ -33,7 +34,8 @@ fn worlds() -> [World; 3] {
 /// The printed models and the individuals of a search's first generation.
 fn models(world: &World) -> Vec<(String, Model)> {
     let settings = Settings { seed: 5, population: 32, evaluations: 32 * 20, ..Settings::default() };
-    let mut search = Search::new(world, settings, None).unwrap();
+    let task = Task::in_one(world.scenario().clone(), SwarmConfig::default());
+    let mut search = Search::new(&task, settings, None).unwrap();
     assert_eq!(search.advance(&AtomicBool::new(false), &|_| {}), Advance::Generation);
     let printed = PUBLISHED.iter().map(|published| (published.name.to_owned(), published.network().unwrap()));
     let trees = search.state().population.iter().map(|individual| &individual.tree);

@@ -70,7 +70,7 @@ fn a_robot_that_hears_its_own_broadcast_drives_as_if_it_did_not() {
 }
 
 #[test]
-fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
+fn robots_that_follow_a_broken_contour_along_walls_are_lost() {
     let (run, trace) = simulation("nand-xnor", "compound-channel", SwarmConfig { seed: 13, ..SwarmConfig::default() });
     let frame = trace.frames().last().unwrap();
     let away = frame.robots.iter().filter(|robot| {
@@ -79,7 +79,7 @@ fn robots_that_follow_a_broken_contour_along_walls_are_not_accurate() {
     });
     assert_eq!((away.count(), run.metrics.lost_robots), (12, 12));
     let verdict = run.verdict();
-    assert!(!verdict.accurate && !verdict.known && !verdict.none_lost && !verdict.works(), "{:?}", run.metrics);
+    assert!(!verdict.caged && !verdict.together && !verdict.works(), "{verdict:?}, {:?}", run.metrics);
     assert_eq!(run.radial_error_share(), None, "most distances are unknown, so the median is");
 }
 
@@ -88,8 +88,8 @@ fn a_swarm_that_runs_into_itself_again_and_again_does_not_work() {
     let lab = lab::set(Laboratory::default(), "radio.loss=0.95").unwrap();
     let (deaf, _) = simulation("nand-xnor", "channel", SwarmConfig { lab, ..SwarmConfig::default() });
     let verdict = deaf.verdict();
-    assert!(deaf.metrics.peer_contacts > 12 && !verdict.clear_of_peers && !verdict.works(), "{:?}", deaf.metrics);
-    assert!(verdict.encircled && verdict.accurate, "nothing else is wrong: {:?}", deaf.metrics);
+    assert!(deaf.metrics.peer_contacts > 12 && !verdict.clear && !verdict.works(), "{:?}", deaf.caging);
+    assert!(verdict.in_band && verdict.together, "nothing else is wrong: {:?}", deaf.caging);
 }
 
 /// A printed model and a typical evolved knee.

@@ -56,9 +56,9 @@ fn noise(seed: u64) -> f64 {
     ((z ^ (z >> 27)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-const NONE: Knee = Knee { angle: false, utility: false };
-const ANGLE: Knee = Knee { angle: true, utility: false };
-const BOTH: Knee = Knee { angle: true, utility: true };
+const NONE: Knee = Knee { angle: false, utility: false, parsimony: false };
+const ANGLE: Knee = Knee { angle: true, utility: false, parsimony: false };
+const BOTH: Knee = Knee { angle: true, utility: true, parsimony: false };
 
 fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
     ParetoPoint { nodes, f2, feasible, knee, label: label.into() }

@@ -43,7 +43,11 @@ fn window() -> impl Strategy<Value = Window> {
 }
 
 fn knee() -> impl Strategy<Value = Knee> {
-    (any::<bool>(), any::<bool>()).prop_map(|(angle, utility)| Knee { angle, utility })
+    (any::<bool>(), any::<bool>(), any::<bool>()).prop_map(|(angle, utility, parsimony)| Knee {
+        angle,
+        utility,
+        parsimony,
+    })
 }
 
 fn pages(drawn: Result<Vec<String>, FigureError>) {

@@ -48,17 +48,16 @@ pub struct Knee {
     pub angle: bool,
     /// The largest marginal utility.
     pub utility: bool,
+    /// The simplest one that is as good as the best, as far as noisy values tell: see [`parsimonious`](crate::parsimony::parsimonious).
+    pub parsimony: bool,
 }
 
 impl fmt::Display for Knee {
-    /// `angle`, `utility`, `angle+utility`, or nothing for a point that is no knee.
+    /// `angle`, `utility`, `parsimony`, several of them with `+` in between, or nothing for a point that is no knee.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match (self.angle, self.utility) {
-            (true, true) => "angle+utility",
-            (true, false) => "angle",
-            (false, true) => "utility",
-            (false, false) => "",
-        })
+        let named = [(self.angle, "angle"), (self.utility, "utility"), (self.parsimony, "parsimony")];
+        let names: Vec<_> = named.into_iter().filter(|(is, _)| *is).map(|(_, name)| name).collect();
+        f.write_str(&names.join("+"))
     }
 }
 
@@ -68,7 +67,11 @@ pub struct ParseKneeError(String);
 
 impl fmt::Display for ParseKneeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "knee {:?}: angle, utility, angle+utility or nothing is needed", self.0)
+        write!(
+            f,
+            "knee {:?}: angle, utility, parsimony, several of them as in angle+utility, or nothing is needed",
+            self.0
+        )
     }
 }
 
@@ -78,8 +81,9 @@ impl FromStr for Knee {
     type Err = ParseKneeError;
 
     fn from_str(text: &str) -> Result<Knee, ParseKneeError> {
-        let all = [(false, false), (true, false), (false, true), (true, true)];
-        let mut knees = all.into_iter().map(|(angle, utility)| Knee { angle, utility });
+        let is = |number: u8, bit: u8| number >> bit & 1 == 1;
+        let mut knees =
+            (0..8).map(|number| Knee { angle: is(number, 0), utility: is(number, 1), parsimony: is(number, 2) });
         knees.find(|knee| knee.to_string() == text).ok_or_else(|| ParseKneeError(text.into()))
     }
 }
@@ -88,7 +92,9 @@ impl FromStr for Knee {
 #[must_use]
 pub fn knees(points: &[[f64; 2]]) -> Vec<Knee> {
     let (angle, utility) = (knee_by_angle(points, Neighbours::Nearest), knee_by_utility(points));
-    (0..points.len()).map(|place| Knee { angle: angle == Some(place), utility: utility == Some(place) }).collect()
+    (0..points.len())
+        .map(|place| Knee { angle: angle == Some(place), utility: utility == Some(place), parsimony: false })
+        .collect()
 }
 
 /// The distinct points of a front, scaled, by increasing first and so decreasing second objective.

@@ -8,6 +8,7 @@
 //! | [`de`] | differential evolution DE/rand/1/bin for any fitness that can be compared |
 //! | [`cmaes`] | CMA-ES, whole or one generation at a time, for any fitness that can be compared |
 //! | [`knee`] | which point of a two-objective front is the knee: by angle, by marginal utility |
+//! | [`parsimony`] | which of several noisily known candidates to prefer: the simplest of the best |
 //! | [`hypervolume`] | the exact area a two-objective front dominates |
 //! | [`bounds`] | the box a real vector lives in |
 //! | [`statistics`] | quartiles, effect sizes, tests with correction, intervals |
@@ -58,6 +59,7 @@ pub mod de;
 pub mod hypervolume;
 pub mod knee;
 pub mod nsga2;
+pub mod parsimony;
 pub mod problems;
 pub mod real;
 pub mod statistics;

@@ -2,7 +2,7 @@
 
 use crate::evaluation::World;
 use crate::evolve::eh_grn::{self, Structure};
-use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings};
+use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings, Task};
 use crate::model::variation::MotifSet;
 use grn_optimisers::knee::Knee;
 use serde::{Deserialize, Serialize};
@@ -63,16 +63,16 @@ impl Method {
     }
 
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.
-    pub fn run(&self, world: &World, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
+    pub fn run(&self, task: &Task, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
         match self {
-            Method::Mogp { .. } => mogp(world, self.settings(evaluations, seed)?, stop),
-            Method::EhGrn { structure } => baseline(world, *structure, evaluations, seed, stop),
+            Method::Mogp { .. } => mogp(task, self.settings(evaluations, seed)?, stop),
+            Method::EhGrn { structure } => baseline(&task.worlds()[0], *structure, evaluations, seed, stop),
         }
     }
 }
 
-fn mogp(world: &World, settings: Settings, stop: &AtomicBool) -> Option<Outcome> {
-    let mut search = Search::new(world, settings, None).ok()?;
+fn mogp(task: &Task, settings: Settings, stop: &AtomicBool) -> Option<Outcome> {
+    let mut search = Search::new(task, settings, None).ok()?;
     loop {
         match search.advance(stop, &|_| ()) {
             Advance::Generation => {}
@@ -80,7 +80,7 @@ fn mogp(world: &World, settings: Settings, stop: &AtomicBool) -> Option<Outcome>
             Advance::Interrupted => return None,
         }
     }
-    Some(Outcome { front: search.front(), history: search.state().history.clone() })
+    Some(Outcome { front: search.confirmed_front(stop)?, history: search.state().history.clone() })
 }
 
 fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
@@ -91,7 +91,7 @@ fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, 
         f2: tuned.evaluation.f2,
         further: Vec::new(),
         violation: tuned.evaluation.violation,
-        knee: Knee { angle: true, utility: true },
+        knee: Knee { angle: true, utility: true, parsimony: false },
     }];
     Some(Outcome { front, history })
 }

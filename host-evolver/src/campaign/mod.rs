@@ -26,7 +26,7 @@ pub use tables::Tables;
 pub use trial::Trial;
 pub use unit::{Found, Unit};
 
-use crate::evaluation::World;
+use crate::evolve::Task;
 use crate::files::{self, FileError, FolderLock};
 use crate::realities::Reality;
 use manifest::{BELOW, Manifest};
@@ -108,7 +108,7 @@ pub struct Campaign {
     plan: Plan,
     lock: FolderLock,
     manifest: Manifest,
-    worlds: Vec<OnceLock<World>>,
+    tasks: Vec<OnceLock<Task>>,
 }
 
 impl Campaign {
@@ -121,8 +121,8 @@ impl Campaign {
         let manifest = Manifest::begin(&plan, folder)?;
         files::remove_unfinished(&lock, &BELOW)?;
         files::probe_folder(&lock, &paths(&plan))?;
-        let worlds = plan.scenarios.iter().map(|_| OnceLock::new()).collect();
-        Ok(Campaign { plan, lock, manifest, worlds })
+        let tasks = plan.scenarios.iter().map(|_| OnceLock::new()).collect();
+        Ok(Campaign { plan, lock, manifest, tasks })
     }
 
     fn folder(&self) -> &Path {
@@ -308,9 +308,8 @@ impl Campaign {
             if let Found::Damaged(why) = found {
                 listener.notice(&format!("{why}: this run is done again"));
             }
-            let world = self.worlds[unit.scenario]
-                .get_or_init(|| World::new(self.plan.scenarios[unit.scenario].scenario.clone()));
-            if !unit.run(&self.plan, self.folder(), world, stop)? {
+            let task = self.tasks[unit.scenario].get_or_init(|| self.plan.task(unit.scenario));
+            if !unit.run(&self.plan, self.folder(), task, stop)? {
                 return Ok(false);
             }
             listener.done(worth);

@@ -2,6 +2,7 @@
 
 use super::method::Method;
 use super::simulate::Simulate;
+use crate::evolve::Task;
 use firmware_sim::scenario::Scenario;
 use grn_core::network::Network;
 use grn_input::file_name;
@@ -22,6 +23,14 @@ pub struct Plan {
     pub transfers: Vec<PlannedTransfer>,
     /// The laboratory that the knee of each run is simulated in, if it is.
     pub simulate: Option<Simulate>,
+}
+
+impl Plan {
+    /// What runs in the scenario at this place are for; swarms are tried under the conditions in which knees are simulated.
+    pub fn task(&self, scenario: usize) -> Task {
+        let swarm = self.simulate.clone().unwrap_or_default().config();
+        Task::in_one(self.scenarios[scenario].scenario.clone(), swarm)
+    }
 }
 
 /// A world with its budget.

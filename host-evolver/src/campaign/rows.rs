@@ -187,9 +187,10 @@ pub struct SimulationRow {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Median share of the time after forming in which every target was encircled; 0 where the swarm never formed, and for a knee
-    /// that cannot drive a robot.
-    pub encircled: f64,
+    /// Mean share of the time in which targets were caged; 0 for a knee that cannot drive a robot.
+    pub caged: f64,
+    /// Mean cost J; nothing for a knee that cannot drive a robot.
+    pub cost: Option<f64>,
     /// Median radial error as a share of the ring's radius; where it is not known it is longer than any other, and nothing if
     /// that is the median.
     pub radial_error: Option<f64>,

@@ -221,6 +221,9 @@ fn simulation_rows(
     let median = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
         Robustness { realities: realities.to_vec() }.quantile(0.5, measure)
     };
+    let mean = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
+        (!realities.is_empty()).then(|| Robustness { realities: realities.to_vec() }.mean(measure))
+    };
     let row = |(unit, realities): &(Unit, Vec<Reality>)| {
         // A knee that cannot drive a robot works nowhere.
         let works = realities.iter().filter(|reality| reality.works).count();
@@ -236,7 +239,8 @@ fn simulation_rows(
             rate: works as f64 / count as f64,
             low,
             high,
-            encircled: median(realities, &|reality| reality.encircled_share).unwrap_or(0.0),
+            caged: mean(realities, &|reality| reality.caged_share).unwrap_or(0.0),
+            cost: mean(realities, &|reality| reality.cost),
             radial_error: median(realities, &error).filter(|error| error.is_finite()),
         }
     };

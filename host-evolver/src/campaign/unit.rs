@@ -2,8 +2,7 @@
 
 use super::method::{Method, Outcome};
 use super::plan::{Plan, slug};
-use crate::evaluation::World;
-use crate::evolve::{FrontMember, Milestone};
+use crate::evolve::{FrontMember, Milestone, Task};
 use crate::files::{self, Contents, FileError, Ledger};
 use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::results;
@@ -117,10 +116,10 @@ impl Unit {
     ///
     /// # Errors
     /// What the operating system says.
-    pub fn run(self, plan: &Plan, campaign: &Path, world: &World, stop: &AtomicBool) -> Result<bool, FileError> {
+    pub fn run(self, plan: &Plan, campaign: &Path, task: &Task, stop: &AtomicBool) -> Result<bool, FileError> {
         let planned = &plan.scenarios[self.scenario];
         let method = &plan.methods[self.method].method;
-        let Some(Outcome { front, history }) = method.run(world, planned.evaluations, self.seed, stop) else {
+        let Some(Outcome { front, history }) = method.run(task, planned.evaluations, self.seed, stop) else {
             return Ok(false);
         };
         let morphogen = planned.scenario.morphogen();

@@ -159,8 +159,9 @@ mod tests {
 
     /// Options whose values are words, names or paths. Every other one takes numbers, which may have a minus sign: what is
     /// wrong with them is then told with their range, and not that there is no option `-1`.
-    const WORDS: [&str; 12] = [
+    const WORDS: [&str; 13] = [
         "class",
+        "constraints",
         "image",
         "lab",
         "merge",

@@ -78,10 +78,18 @@ impl Experiment<'_> {
             "number": self.number,
             "scenario": self.scenario.name(),
             "swarm": self.config,
+            "caged_share": robustness.mean(|reality| reality.caged_share),
+            "pen": robustness.mean(|reality| reality.pen),
+            "in_band_share": robustness.mean(|reality| reality.in_band_share),
+            "contact_share": robustness.mean(|reality| reality.contact_share),
+            "lost_share": robustness.mean(|reality| reality.lost_share),
+            "formed_at_s": robustness.mean_formed_at_s(),
+            "cost": robustness.mean(|reality| reality.cost),
             "realities": robustness.realities,
             "works": robustness.works(),
+            "works_share": robustness.mean(|reality| f64::from(u8::from(reality.works))),
+            "works_interval": [low, high],
             "of": robustness.realities.len(),
-            "interval_95": [low, high],
             "enough": robustness.is_enough(),
             "worst": robustness.worst(NAMED).iter().map(|reality| reality.number).collect::<Vec<_>>(),
         })
@@ -95,18 +103,19 @@ impl Experiment<'_> {
             let cell = |share| robustness.quantile(share, measure).map_or(String::new(), text);
             format!("{name:<28}{:>12}{:>12}{:>12}\n", cell(0.5), cell(0.95), cell(1.0))
         };
-        let whole = |value: f64| format!("{value:.0}");
+        let seconds = |time: f64| if time.is_finite() { format!("{time:.0} s") } else { "never".into() };
         let mut text = format!("{:<28}{:>12}{:>12}{:>12}\n", "", "median", "19 of 20", "worst");
-        text += &row("not encircled after forming", &|reality| 1.0 - reality.encircled_share, &percent);
+        text += &row("not caged", &|reality| 1.0 - reality.caged_share, &percent);
+        text += &row("out of the band", &|reality| 1.0 - reality.in_band_share, &percent);
+        text += &row("in contact", &|reality| reality.contact_share, &percent);
+        text += &row("robots lost", &|reality| reality.lost_share, &percent);
+        text += &row("formed after", &|reality| reality.formed_at_s.unwrap_or(f64::INFINITY), &seconds);
+        text += &row("cost J", &|reality| reality.cost, &|cost| format!("{cost:.3}"));
         if robustness.realities.iter().any(|reality| reality.reformed_encircled_share.is_some()) {
             let left_open = |reality: &Reality| 1.0 - reality.reformed_encircled_share.unwrap_or(1.0);
             text += &row("not encircled once re-formed", &left_open, &percent);
         }
         text += &row("radial error / ring", &error, &percent);
-        text += &row("robots lost", &|reality| reality.lost_robots as f64, &whole);
-        text += &row("robots strayed", &|reality| reality.strayed_robots as f64, &whole);
-        text += &row("wall contacts", &|reality| reality.wall_contacts as f64, &whole);
-        text += &row("peer contacts", &|reality| reality.peer_contacts as f64, &whole);
         let (works, of) = (robustness.works(), robustness.realities.len());
         let (low, high) = robustness.interval();
         text += &format!(
@@ -118,8 +127,7 @@ impl Experiment<'_> {
         );
         let named = robustness.worst(NAMED).into_iter().map(|reality| {
             let fails = if reality.works { "works" } else { "fails" };
-            let (encircled, error) = (percent(reality.encircled_share), percent(error(reality)));
-            format!("{} ({fails}, encircled {encircled}, radial error {error})", reality.number)
+            format!("{} ({fails}, caged {}, J {:.3})", reality.number, percent(reality.caged_share), reality.cost)
         });
         text += &format!("worst: {}; see one with --reality NUMBER", named.collect::<Vec<_>>().join(", "));
         text

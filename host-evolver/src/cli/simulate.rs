@@ -9,9 +9,8 @@ use crate::faults;
 use crate::files::{self, Contents, FileError, FolderLock, read_blob};
 use crate::realities;
 use crate::record;
-use crate::simulation::{
-    self, DEFAULT_SPEED, ENOUGH_ACCURACY, ENOUGH_ENCIRCLED, ENOUGH_UNKNOWN, Simulation, SimulationError, usual_config,
-};
+use crate::simulation::verdict::{ENOUGH_CAGED, ENOUGH_IN_BAND, MOST_CONTACT, MOST_LOST};
+use crate::simulation::{self, DEFAULT_SPEED, Simulation, SimulationError, doubts, usual_config};
 use firmware_sim::base_station::Dispatch;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::MAX_ROBOTS;
@@ -31,16 +30,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Robots in QEMU when nothing else is said.
 const DEFAULT_EMULATED: usize = 4;
 const BARS: &str = "\
-A run works (exit code 0) if all of this holds:
-  encircled         every target, in at least 98 % of the moments after the swarm formed
-  radial error      its median is below 10 % of the ring's radius; unknown distances are longer than any other
-  distance unknown  in at most 5 % of the robots' moments: no point of the pattern is found, or only one farther than two
-                    ring radii from every target, on a contour that follows walls
-  robots lost       none is off the pattern at the end: farther from it than half a ring radius and from every target
-                    than 1.5 ring radii, for 5 s already
-  robots strayed    none was off the pattern for 5 s and came back
-  wall contacts     none
-  peer contacts     at most one for each robot";
+A run works (exit code 0) if all of this holds, once the targets have settled:
+  caged         targets can leave nowhere in at least 95 % of the moments: every way out of the ring is shut by walls, or by
+                robots that are nearer to each other than half of d_max
+  in the band   robots are within d_min and d_max of a target in at least half of their moments
+  in contact    robots touch walls or each other in at most 2 % of their time
+  robots lost   at most 5 % are off the pattern at the end: farther from it than half a ring radius and from every target than
+                1.5 ring radii, for 5 s already
+  formed        targets were caged for the first time before a robot could have driven once around a ring of radius d_max";
 
 #[derive(clap::Args)]
 #[command(after_help = BARS)]
@@ -210,6 +207,10 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Whether a swarm can be set up in the world of a scenario's file.
 pub fn check_swarm(path: &Path, scenario: &Scenario, config: &SwarmConfig) -> Result<(), Failure> {
     let fits = swarm::check(scenario, config).and_then(|()| simulation::check_length(scenario, config));
+    if fits.is_ok() {
+        let of_world = |doubt: &String| output::notice(format_args!("{}: {doubt}", scenario.name()));
+        doubts(scenario, config).iter().for_each(of_world);
+    }
     fits.map_err(|error| match error.key() {
         "target_speed_m_per_s" => Failure::Input(format!("--speed {}: {}", error.value(), error.expected())),
         "scale" | "robots" => {
@@ -288,43 +289,30 @@ fn keep(folder: &Path, contents: &Contents) -> Result<(), FileError> {
 
 /// What came out, one bar a line.
 pub fn table(simulation: &Simulation) -> String {
-    let metrics = &simulation.metrics;
+    let (metrics, caging) = (&simulation.metrics, &simulation.caging);
     let verdict = simulation.verdict();
-    let percent = |share: Option<f64>| share.map_or("never formed".into(), |share| format!("{:.1} %", share * 100.0));
-    let seconds = |time: Option<f64>| time.map_or("never".into(), |time| format!("{time:.1} s"));
+    let percent = |share: f64| format!("{:.1} %", share * 100.0);
+    let known = |share: Option<f64>| share.map_or("unknown".into(), percent);
+    let seconds = |time: Option<f64>| time.map_or("never".into(), |time| format!("{time:.0} s"));
     let mark = |good: bool| if good { "yes" } else { "NO" };
+    let least = |share: f64| format!("at least {:.0} %", share * 100.0);
+    let most = |share: f64| format!("at most {:.0} %", share * 100.0);
+    let bar = |name, measured: String, wanted: String, met| (name, measured, wanted, mark(met));
+    let told = |name, measured: String| (name, measured, String::new(), "");
     let mut rows = vec![
-        (
-            "encircled after forming",
-            percent(metrics.encircled_share),
-            format!("at least {:.0} %", ENOUGH_ENCIRCLED * 100.0),
-            mark(verdict.encircled),
+        bar("caged", percent(caging.caged_share), least(ENOUGH_CAGED), verdict.caged),
+        bar("in the band", percent(caging.in_band_share), least(ENOUGH_IN_BAND), verdict.in_band),
+        bar("in contact", percent(caging.contact_share), most(MOST_CONTACT), verdict.clear),
+        bar("robots lost", percent(simulation.lost_share()), most(MOST_LOST), verdict.together),
+        bar(
+            "formed after",
+            seconds(caging.formed_at_s),
+            format!("at most {:.0} s", simulation.time_to_form_s),
+            verdict.formed,
         ),
-        (
-            "median radial error / ring",
-            match simulation.radial_error_share() {
-                None if metrics.formed_at_s.is_some() => "unknown".into(),
-                share => percent(share),
-            },
-            format!("below {:.0} %", ENOUGH_ACCURACY * 100.0),
-            mark(verdict.accurate),
-        ),
-        (
-            "distance unknown",
-            percent(metrics.radial_error_unknown_share),
-            format!("at most {:.0} %", ENOUGH_UNKNOWN * 100.0),
-            mark(verdict.known),
-        ),
-        ("robots lost", metrics.lost_robots.to_string(), "none".into(), mark(verdict.none_lost)),
-        ("robots strayed", metrics.strayed_robots.to_string(), "none".into(), mark(verdict.none_strayed)),
-        ("wall contacts", metrics.wall_contacts.to_string(), "none".into(), mark(verdict.clear_of_walls)),
-        (
-            "peer contacts",
-            metrics.peer_contacts.to_string(),
-            format!("at most {}", simulation.allowed_peer_contacts()),
-            mark(verdict.clear_of_peers),
-        ),
-        ("formed after", seconds(metrics.formed_at_s), String::new(), ""),
+        told("cost J", format!("{:.3}", caging.cost())),
+        told("median radial error / ring", known(simulation.radial_error_share())),
+        told("wall, peer contacts", format!("{}, {}", metrics.wall_contacts, metrics.peer_contacts)),
     ];
     if !metrics.recoveries.is_empty() {
         let reformed = metrics.recoveries.iter().filter(|recovery| recovery.reformed_at_s.is_some()).count();
@@ -335,7 +323,7 @@ pub fn table(simulation: &Simulation) -> String {
             String::new(),
             "",
         ));
-        rows.push(("then encircled, at least", percent(least), String::new(), ""));
+        rows.push(("then encircled, at least", known(least), String::new(), ""));
     }
     if let Some(base) = &simulation.base {
         let count = |what| base.dispatched.iter().filter(|deed| deed.what == what).count().to_string();

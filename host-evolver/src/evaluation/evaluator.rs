@@ -10,6 +10,7 @@
 //! This is racing (Maron and Moore 1994, *Hoeffding races*): candidates drop out as soon as they are sure to lose. Here the
 //! bounds are exact instead of statistical, so the winners and their values are those of whole evaluations, bit for bit.
 
+use super::constraints::Constraints;
 use super::contour::View;
 use super::error_table::ErrorTable;
 use super::fitness::{Evaluation, WORST_F2, evaluate_snapshot};
@@ -18,32 +19,40 @@ use super::tracer::{Tracer, error_table_of};
 use super::world::{Snapshot, World};
 use crate::model::tree::Tree;
 
-/// Evaluates models in one world; one per thread.
+/// Evaluates models in worlds; one per thread.
 ///
 /// The order of snapshots is learned: those at which recent models did badly come first, so that a losing model drops out
 /// early. Values do not depend on that order, because they are summed in the order of time.
 pub struct Evaluator<'w> {
-    world: &'w World,
-    tracer: Tracer<'w>,
-    /// For each snapshot how badly recent models did there: an exponential average of f2 and weighted violation.
+    worlds: &'w [World],
+    constraints: Constraints,
+    tracers: Vec<Tracer<'w>>,
+    /// The world and the snapshot of each place that models are evaluated at.
+    places: Vec<(usize, usize)>,
+    /// For each place how badly recent models did there: an exponential average of f2 and weighted violation.
     difficulty: Vec<f64>,
 }
 
 impl<'w> Evaluator<'w> {
-    /// An evaluator for `world`.
+    /// An evaluator for `world` with the paper's constraints.
     pub fn new(world: &'w World) -> Self {
-        Evaluator { world, tracer: Tracer::new(world), difficulty: vec![0.0; world.snapshots().len()] }
+        Evaluator::among(std::slice::from_ref(world), Constraints::PAPER)
     }
 
-    /// The world models are evaluated in.
-    pub fn world(&self) -> &'w World {
-        self.world
+    /// An evaluator for several worlds, whose morphogens are the same: a model is worth the mean of what it is in each.
+    pub fn among(worlds: &'w [World], constraints: Constraints) -> Self {
+        let places_in = |(world, snapshots): (usize, &World)| {
+            (0..snapshots.snapshots().len()).map(move |snapshot| (world, snapshot))
+        };
+        let places: Vec<_> = worlds.iter().enumerate().flat_map(places_in).collect();
+        let tracers = worlds.iter().map(Tracer::new).collect();
+        Evaluator { worlds, constraints, tracers, difficulty: vec![0.0; places.len()], places }
     }
 
     /// The model that a tree's blob will hold, with sigmoid steepness k; `None` without a pattern.
     pub fn model_of(&self, tree: &Tree, steepness: f32) -> Option<Model> {
         let network = tree.network(steepness).ok()?;
-        Model::new(&network, self.world.scenario().morphogen().level).ok()
+        Model::new(&network, self.worlds.first()?.scenario().morphogen().level).ok()
     }
 
     /// Evaluates a model over all snapshots.
@@ -105,31 +114,42 @@ const VIOLATION_WEIGHT: f64 = 10.0;
 /// The difficulty of a snapshot at which every second model encloses no target.
 const USUALLY_LOST: f64 = (WORST_F2 + VIOLATION_WEIGHT) / 2.0;
 
-/// A model evaluated at some of the snapshots.
+/// A model evaluated at some of the places.
 struct PartialEvaluation<'m> {
     model: &'m Model,
+    /// What it violates everywhere.
+    islands: f64,
     /// `Some(None)` if no table is accurate enough for this model.
     table: Option<Option<ErrorTable>>,
-    /// The value at each snapshot, where it is known.
+    /// The value at each place, where it is known.
     values: Vec<Option<Evaluation>>,
-    /// Snapshots to evaluate on the coarse lattice.
+    /// Places to evaluate on the coarse lattice.
     pending: Vec<usize>,
-    /// Snapshots that the coarse lattice left in doubt, to evaluate on the fine one.
+    /// Places that the coarse lattice left in doubt, to evaluate on the fine one.
     doubtful: Vec<usize>,
     /// The mean of known values and of the best possible one for the others; the model's value once all are known.
     bound: Evaluation,
 }
 
 impl<'m> PartialEvaluation<'m> {
-    /// Snapshots at which every target is outside the pattern are decided at once, without a table.
+    /// Places at which every target is outside the pattern are decided at once, without a table.
     fn new(model: &'m Model, evaluator: &Evaluator<'_>) -> Self {
+        let Evaluator { worlds, constraints, places, .. } = evaluator;
         let is_lost = |snapshot: &Snapshot| snapshot.target_inputs.iter().all(|&[x1, x2]| model.error(x1, x2) < 0.0);
-        let lost = |snapshot| is_lost(snapshot).then_some(Evaluation::NO_PATTERN);
-        let values: Vec<_> = evaluator.world.snapshots().iter().map(lost).collect();
-        let pending = (0..values.len()).filter(|&place| values[place].is_none()).collect();
-        let bound = Evaluation::NO_PATTERN;
-        let mut evaluation = PartialEvaluation { model, table: None, values, pending, doubtful: Vec::new(), bound };
-        evaluation.update_bound(evaluator.world);
+        let lost = |&(world, snapshot): &(usize, usize)| {
+            is_lost(&worlds[world].snapshots()[snapshot]).then(|| Evaluation::all_lost(constraints))
+        };
+        let values: Vec<_> = places.iter().map(lost).collect();
+        let mut evaluation = PartialEvaluation {
+            model,
+            islands: worlds.first().map_or(0.0, |world| constraints.islands(model, &world.scenario().morphogen())),
+            table: None,
+            pending: (0..values.len()).filter(|&place| values[place].is_none()).collect(),
+            values,
+            doubtful: Vec::new(),
+            bound: Evaluation::NO_PATTERN,
+        };
+        evaluation.update_bound(evaluator);
         evaluation
     }
 
@@ -137,39 +157,49 @@ impl<'m> PartialEvaluation<'m> {
         self.pending.is_empty() && self.doubtful.is_empty()
     }
 
-    /// Evaluates one more snapshot, the most difficult first, or finds it doubtful.
+    /// Evaluates at one more place, the most difficult first, or finds it doubtful.
     fn advance(&mut self, evaluator: &mut Evaluator<'_>) {
-        let world = evaluator.world;
-        let table = self.table.get_or_insert_with(|| error_table_of(world, self.model)).as_ref();
-        let view = |place: usize| View { model: self.model, snapshot: &world.snapshots()[place], table };
         let difficulty = |&pending: &usize| evaluator.difficulty[self.pending[pending]];
         let hardest = (0..self.pending.len()).max_by(|a, b| difficulty(a).total_cmp(&difficulty(b)));
-        let (place, contours) = if let Some(hardest) = hardest {
-            let place = self.pending.swap_remove(hardest);
-            let Some(contours) = evaluator.tracer.trace(view(place), evaluator.difficulty[place] > USUALLY_LOST) else {
-                return self.doubtful.push(place);
-            };
-            (place, contours)
-        } else if let Some(place) = self.doubtful.pop() {
-            (place, evaluator.tracer.trace_finely(view(place)))
-        } else {
+        let is_coarse = hardest.is_some();
+        let Some(place) = hardest.map(|hardest| self.pending.swap_remove(hardest)).or_else(|| self.doubtful.pop())
+        else {
             return;
         };
-        let value = evaluate_snapshot(world, &world.snapshots()[place], &contours);
+        let (world, snapshot) = evaluator.places[place];
+        let (world, tracer) = (&evaluator.worlds[world], &mut evaluator.tracers[world]);
+        let snapshot = &world.snapshots()[snapshot];
+        let table = self.table.get_or_insert_with(|| error_table_of(evaluator.worlds, self.model)).as_ref();
+        let view = View { model: self.model, snapshot, table };
+        let contours = if is_coarse {
+            let Some(contours) = tracer.trace(view, evaluator.difficulty[place] > USUALLY_LOST) else {
+                return self.doubtful.push(place);
+            };
+            contours
+        } else {
+            tracer.trace_finely(view)
+        };
+        let value = evaluate_snapshot(world, snapshot, &contours, &evaluator.constraints);
         evaluator.learn(place, value);
         self.values[place] = Some(value);
-        self.update_bound(world);
+        self.update_bound(evaluator);
     }
 
     /// A rounded sum never falls when one of its terms rises, so the bound holds for rounded values too.
-    fn update_bound(&mut self, world: &World) {
-        let best_possible = Evaluation { f2: world.terms.least, violation: 0.0 };
-        let mut sum = Evaluation { f2: 0.0, violation: 0.0 };
-        for value in &self.values {
-            let value = value.unwrap_or(best_possible);
-            sum = Evaluation { f2: sum.f2 + value.f2, violation: sum.violation + value.violation };
+    fn update_bound(&mut self, evaluator: &Evaluator<'_>) {
+        let mut values = self.values.iter();
+        let mut of_all = Evaluation { f2: 0.0, violation: 0.0 };
+        for world in evaluator.worlds {
+            let best_possible = Evaluation { f2: world.terms.least, violation: 0.0 };
+            let snapshots = world.snapshots().len();
+            let mut sum = Evaluation { f2: 0.0, violation: 0.0 };
+            for value in values.by_ref().take(snapshots) {
+                sum = sum.plus(value.unwrap_or(best_possible));
+            }
+            of_all = of_all.plus(sum.over(snapshots as f64));
         }
-        self.bound = sum.over(self.values.len() as f64);
+        let Evaluation { f2, violation } = of_all.over(evaluator.worlds.len() as f64);
+        self.bound = Evaluation { f2, violation: violation + self.islands };
     }
 }
 

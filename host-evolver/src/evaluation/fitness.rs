@@ -1,6 +1,7 @@
 //! f2 and constraint violation of a model over a scenario's snapshots (model page, section 4).
 
 use super::candidates::candidates;
+use super::constraints::Constraints;
 use super::distance_table::DistanceTable;
 use super::lanes::{Lanes, WIDTH};
 use super::tracer::Contours;
@@ -11,8 +12,6 @@ use std::cmp::Ordering;
 
 /// Candidate points per ring that f2 averages over.
 pub const CANDIDATES_PER_RING: usize = 48;
-/// Candidate points nearer to an obstacle than this (metres) violate the constraint.
-pub const SMALLEST_CLEARANCE: f64 = 0.05;
 /// f2 of a snapshot without any ring: the worst its two terms can add up to.
 pub const WORST_F2: f64 = 2.0;
 /// Violation of a model without a pattern: no target is enclosed at any snapshot.
@@ -31,6 +30,15 @@ pub struct Evaluation {
 impl Evaluation {
     /// The evaluation of a model without a pattern.
     pub const NO_PATTERN: Evaluation = Evaluation { f2: WORST_F2, violation: NO_PATTERN_VIOLATION };
+
+    /// The evaluation of a snapshot at which every target is outside the pattern.
+    pub(super) fn all_lost(constraints: &Constraints) -> Evaluation {
+        Evaluation { f2: WORST_F2, violation: f64::from(u8::from(constraints.enclosed)) }
+    }
+
+    pub(super) fn plus(self, other: Evaluation) -> Evaluation {
+        Evaluation { f2: self.f2 + other.f2, violation: self.violation + other.violation }
+    }
 
     pub(super) fn over(self, count: f64) -> Evaluation {
         Evaluation { f2: self.f2 / count, violation: self.violation / count }
@@ -54,15 +62,22 @@ impl Evaluation {
 }
 
 /// f2 and violation of a pattern at one snapshot.
-pub(super) fn evaluate_snapshot(world: &World, snapshot: &Snapshot, contours: &Contours) -> Evaluation {
+pub(super) fn evaluate_snapshot(
+    world: &World,
+    snapshot: &Snapshot,
+    contours: &Contours,
+    constraints: &Constraints,
+) -> Evaluation {
     let lost = contours.enclosed.iter().filter(|&&enclosed| !enclosed).count() as f64;
-    let lost = lost / snapshot.targets.len() as f64;
+    let lost = if constraints.enclosed { lost / snapshot.targets.len() as f64 } else { 0.0 };
     let (mut to_targets, mut to_obstacles, mut close, mut count) = (0.0, 0.0, 0_usize, 0_usize);
     for ring in &contours.rings {
         let points = candidates(ring, CANDIDATES_PER_RING);
         to_targets += sum_over(&snapshot.targets, &points, &world.terms.target);
         to_obstacles += sum_over(&snapshot.obstacle_points, &points, &world.terms.obstacle);
-        close += points.iter().filter(|&&point| world.is_closer_than(snapshot, point, SMALLEST_CLEARANCE)).count();
+        if let Some(clearance) = constraints.clearance {
+            close += points.iter().filter(|&&point| world.is_closer_than(snapshot, point, clearance)).count();
+        }
         count += points.len();
     }
     if count == 0 {

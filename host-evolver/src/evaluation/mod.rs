@@ -11,6 +11,7 @@
 //! 6. [`Evaluator`] chooses which snapshot of which model comes next, and stops once it is sure which models win.
 
 mod candidates;
+pub mod constraints;
 mod contour;
 mod corners;
 mod distance_table;
@@ -27,8 +28,9 @@ mod terms;
 mod tracer;
 mod world;
 
+pub use constraints::{ConstraintNames, Constraints, SMALLEST_CLEARANCE};
 pub use evaluator::Evaluator;
-pub use fitness::{CANDIDATES_PER_RING, Evaluation, SMALLEST_CLEARANCE};
+pub use fitness::{CANDIDATES_PER_RING, Evaluation};
 pub use lattice::LATTICE_STEP;
 pub use model::Model;
 pub use tracer::{Contours, Tracer};

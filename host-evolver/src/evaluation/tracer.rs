@@ -49,7 +49,7 @@ impl<'w> Tracer<'w> {
 
     /// The patterns of `model` at each snapshot of the world, in turn.
     pub fn trace_all<'t>(&'t mut self, model: &'t Model) -> impl Iterator<Item = (&'w Snapshot, Contours)> + 't {
-        let table = error_table_of(self.world, model);
+        let table = error_table_of(std::slice::from_ref(self.world), model);
         self.world.snapshots().iter().map(move |snapshot| {
             let view = View { model, snapshot, table: table.as_ref() };
             (snapshot, self.trace(view, false).unwrap_or_else(|| self.trace_finely(view)))
@@ -75,8 +75,9 @@ impl<'w> Tracer<'w> {
 }
 
 /// The table to trace a model by in a world; `None` if none is accurate enough.
-pub(super) fn error_table_of(world: &World, model: &Model) -> Option<ErrorTable> {
-    ErrorTable::of(model, world.scenario().targets().len(), CHART_TOLERANCE)
+pub(super) fn error_table_of(worlds: &[World], model: &Model) -> Option<ErrorTable> {
+    let targets = worlds.iter().map(|world| world.scenario().targets().len()).max();
+    ErrorTable::of(model, targets.unwrap_or(1), CHART_TOLERANCE)
 }
 
 /// What becomes of a target's component; `Closed` says which component it is.

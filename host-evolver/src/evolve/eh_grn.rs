@@ -92,6 +92,7 @@ pub fn search(
     let settings = cmaes::Settings::new(POPULATION, SIGMA, evaluations.max(1)).ok()?.passive();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut evaluator = Evaluator::new(world);
+    let level = world.scenario().morphogen().level;
     let mut best: Option<Tuned> = None;
     let mut history = Vec::new();
     let mut spent = 0;
@@ -105,7 +106,7 @@ pub fn search(
         }
         let mut population = cma.ask(&mut rng);
         population.truncate(evaluations - spent);
-        let found = evaluate_all(structure, &mut evaluator, &population);
+        let found = evaluate_all(structure, &mut evaluator, level, &population);
         spent += population.len();
         let order = cmaes::rank(&found, Evaluation::is_as_good_as);
         let champion = order[0];
@@ -121,8 +122,12 @@ pub fn search(
 }
 
 /// The evaluation of each vector; only those of the better half are exact.
-fn evaluate_all(structure: Structure, evaluator: &mut Evaluator<'_>, population: &[Vec<f64>]) -> Vec<Evaluation> {
-    let level = evaluator.world().scenario().morphogen().level;
+fn evaluate_all(
+    structure: Structure,
+    evaluator: &mut Evaluator<'_>,
+    level: f64,
+    population: &[Vec<f64>],
+) -> Vec<Evaluation> {
     let model = |thetas: &Vec<f64>| structure.network(thetas).and_then(|network| Model::new(&network, level).ok());
     let models: Vec<Option<Model>> = population.iter().map(model).collect();
     evaluator.evaluate_best(&models, POPULATION / 2, None)
@@ -133,7 +138,7 @@ fn milestone(structure: Structure, evaluations: usize, best: &Tuned) -> Mileston
     let point = feasible.map(|f2| [structure.nodes() as f64, f2]);
     let count = usize::from(feasible.is_some());
     let hypervolume = front_hypervolume(point.into_iter());
-    Milestone { evaluations, best_f2: feasible, feasible: count, front: count, hypervolume }
+    Milestone { evaluations, best_f2: feasible, best_cost: None, feasible: count, front: count, hypervolume }
 }
 
 #[cfg(test)]

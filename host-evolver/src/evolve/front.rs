@@ -35,9 +35,11 @@ impl FrontMember {
     }
 }
 
-/// The place of the knee that is deployed, the one by marginal utility; the first member's if there is none.
+/// The place of the knee that is deployed: the one by parsimony where models were tried, else by marginal utility; the first
+/// member's if there is none.
 pub fn deployed(front: &[FrontMember]) -> usize {
-    front.iter().position(|member| member.knee.utility).unwrap_or(0)
+    let parsimonious = front.iter().position(|member| member.knee.parsimony);
+    parsimonious.or_else(|| front.iter().position(|member| member.knee.utility)).unwrap_or(0)
 }
 
 /// The nodes and the f2 beyond which a model counts for nothing in a hypervolume.

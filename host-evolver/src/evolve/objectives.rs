@@ -1,6 +1,6 @@
 //! The objectives of a run.
 
-use super::objective::{ALL, Candidate, Nodes, Objective, RingError};
+use super::objective::{ALL, Candidate, ClosedLoop, Nodes, Objective, RingError};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -14,6 +14,16 @@ impl Objectives {
     /// The paper's: f1 and f2.
     pub fn paper() -> Self {
         Objectives(vec![&Nodes, &RingError])
+    }
+
+    /// What shows best what a swarm does: nodes and the closed loop.
+    pub fn adaptive() -> Self {
+        Objectives(vec![&Nodes, &ClosedLoop])
+    }
+
+    /// Whether some are made from simulated runs.
+    pub fn need_trials(&self) -> bool {
+        self.0.iter().any(|objective| objective.needs_trials())
     }
 
     /// These objectives.

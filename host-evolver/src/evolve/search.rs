@@ -5,19 +5,21 @@
 //! 1. [`Search::advance`] takes the trees it can still afford: ramped half-and-half at first, then tournaments by rank and
 //!    crowding, crossover and mutation; a structure that the generation already has is drawn again.
 //! 2. Each tree's θ are tuned by DE for f2 under Deb's rule, whatever the objectives.
-//! 3. The objectives see the tuned model once, and their values stay with the individual.
-//! 4. Parents and offspring compete; of equal structures only the best stays.
+//! 3. Parents and offspring compete; of equal structures only the best stays. If an objective is made from simulated runs, the
+//!    feasible ones are tried first (see `trials`).
 //!
 //! Every individual has a stream of random numbers of its own, named by (run seed, generation, place), so the result
 //! does not depend on threads, and an interrupted run goes on from its last whole generation to the same end.
 
 use super::front::{FrontMember, front_hypervolume};
 use super::individual::Individual;
-use super::objective::Candidate;
 use super::ranking;
+use super::refinement::{MOST_REFINED, refined};
 use super::settings::{Settings, SettingsError};
 use super::state::{Milestone, State};
-use crate::evaluation::{Evaluation, Evaluator, Model, World};
+use super::task::Task;
+use super::trials::Trials;
+use crate::evaluation::{Evaluation, Evaluator, Model};
 use crate::model::tree::Tree;
 use crate::model::variation::{Grammar, Variation};
 use grn_core::network::THETA_RANGE;
@@ -25,6 +27,7 @@ use grn_optimisers::bounds::Bounds;
 use grn_optimisers::de::{self, Wanted};
 use grn_optimisers::knee::{self, Knee};
 use grn_optimisers::nsga2::{self, Standing};
+use grn_optimisers::parsimony::{Tried, parsimonious};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -47,9 +50,9 @@ pub enum Advance {
     Interrupted,
 }
 
-/// A run of the search in one world.
+/// A run of the search.
 pub struct Search<'w> {
-    world: &'w World,
+    task: &'w Task,
     settings: Settings,
     variation: Box<dyn Variation + 'w>,
     de: de::Settings,
@@ -63,10 +66,10 @@ impl<'w> Search<'w> {
     ///
     /// # Errors
     /// Settings that make no sense, with the value and what is needed.
-    pub fn new(world: &'w World, settings: Settings, state: Option<State>) -> Result<Self, SettingsError> {
+    pub fn new(task: &'w Task, settings: Settings, state: Option<State>) -> Result<Self, SettingsError> {
         let theta = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
         let grammar = Grammar::new(settings.motifs, settings.depth, theta);
-        Search::with(world, settings, Box::new(grammar), state)
+        Search::with(task, settings, Box::new(grammar), state)
     }
 
     /// A run with other variation.
@@ -74,7 +77,7 @@ impl<'w> Search<'w> {
     /// # Errors
     /// Settings that make no sense, with the value and what is needed.
     pub fn with(
-        world: &'w World,
+        task: &'w Task,
         settings: Settings,
         variation: Box<dyn Variation + 'w>,
         state: Option<State>,
@@ -82,7 +85,7 @@ impl<'w> Search<'w> {
         settings.check()?;
         let de = settings.differential_evolution()?;
         let evaluators = Mutex::new(Vec::new());
-        Ok(Search { world, settings, variation, de, state: state.unwrap_or_default(), evaluators })
+        Ok(Search { task, settings, variation, de, state: state.unwrap_or_default(), evaluators })
     }
 
     fn evaluators(&self) -> MutexGuard<'_, Vec<Evaluator<'w>>> {
@@ -94,6 +97,11 @@ impl<'w> Search<'w> {
         &self.state
     }
 
+    /// What it is for.
+    pub fn task(&self) -> &'w Task {
+        self.task
+    }
+
     /// The run's settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -102,7 +110,8 @@ impl<'w> Search<'w> {
     /// Runs one generation on the current thread pool. `tuned` is called after each individual with its evaluation;
     /// once `stop` is set the generation is dropped.
     pub fn advance(&mut self, stop: &AtomicBool, tuned: &(dyn Fn(&Individual) + Sync)) -> Advance {
-        let affordable = (self.settings.evaluations - self.state.evaluations) / self.settings.evaluations_each();
+        let affordable = self.settings.searching_evaluations().saturating_sub(self.state.evaluations)
+            / self.settings.evaluations_each();
         let brood = self.breed(affordable.min(self.settings.population));
         if brood.is_empty() {
             return Advance::Finished;
@@ -111,7 +120,7 @@ impl<'w> Search<'w> {
             if stop.load(atomic::Ordering::Relaxed) {
                 return None;
             }
-            let mut evaluator = self.evaluators().pop().unwrap_or_else(|| Evaluator::new(self.world));
+            let mut evaluator = self.evaluators().pop().unwrap_or_else(|| self.task.evaluator(&self.settings));
             let individual = self.tune(&mut evaluator, &tree, &mut rng);
             self.evaluators().push(evaluator);
             tuned(&individual);
@@ -119,10 +128,17 @@ impl<'w> Search<'w> {
         };
         let offspring: Option<Vec<Individual>> = brood.into_par_iter().with_max_len(1).map(tune).collect();
         let Some(offspring) = offspring else { return Advance::Interrupted };
-        self.state.evaluations += offspring.len() * self.settings.evaluations_each();
+        let spent = offspring.len() * self.settings.evaluations_each();
+        let mut rivals: Vec<Individual> = self.state.population.iter().cloned().chain(offspring).collect();
+        if self.settings.objectives.need_trials() {
+            let hopeless = self.hopeless();
+            if self.trials(stop).race(&mut rivals, hopeless).is_none() {
+                return Advance::Interrupted;
+            }
+        }
+        self.state.population = self.survivors(rivals);
+        self.state.evaluations += spent;
         self.state.generation += 1;
-        let parents = std::mem::take(&mut self.state.population);
-        self.state.population = self.survivors(parents, offspring);
         self.state.history.push(self.milestone());
         Advance::Generation
     }
@@ -188,10 +204,7 @@ impl<'w> Search<'w> {
             Some(best) => (tree.with_thetas(&best.best), best.fitness),
             None => (tree.clone(), Evaluation::NO_PATTERN),
         };
-        let model = evaluator.model_of(&tree, self.settings.steepness);
-        let candidate = Candidate { tree: &tree, model: model.as_ref(), evaluation, world: self.world };
-        let objectives = self.settings.objectives.values(&candidate);
-        Individual::new(tree, objectives, evaluation)
+        Individual::new(tree, &self.settings.objectives, evaluation)
     }
 
     fn milestone(&self) -> Milestone {
@@ -199,6 +212,7 @@ impl<'w> Search<'w> {
         Milestone {
             evaluations: self.state.evaluations,
             best_f2: feasible.clone().map(|individual| individual.f2).min_by(f64::total_cmp),
+            best_cost: feasible.clone().filter_map(Individual::cost).min_by(f64::total_cmp),
             feasible: feasible.clone().count(),
             front: self.front_places().iter().filter(|&&place| self.state.population[place].is_feasible()).count(),
             hypervolume: front_hypervolume(feasible.map(Individual::point)),
@@ -222,18 +236,8 @@ impl<'w> Search<'w> {
             self.front_places().into_iter().map(|place| &self.state.population[place]).collect();
         let points: Vec<[f64; 2]> = front.iter().map(|one| [one.objectives[0], one.objectives[1]]).collect();
         let knees = knee::knees(&points);
-        let member = |(individual, knee): (&Individual, Knee)| {
-            Some(FrontMember {
-                network: individual.tree.network(self.settings.steepness).ok()?,
-                nodes: individual.tree.size(),
-                f2: individual.f2,
-                further: self.settings.objectives.further(&individual.objectives),
-                violation: individual.violation,
-                knee,
-            })
-        };
         // Trees whose networks cannot be made have no evaluation that could put them on a front.
-        front.into_iter().zip(knees).filter_map(member).collect()
+        front.into_iter().zip(knees).filter_map(|(individual, knee)| self.member(individual, knee)).collect()
     }
 
     /// The individuals of the last population that are not on the front.
@@ -243,11 +247,11 @@ impl<'w> Search<'w> {
         population.filter(|(place, _)| !front.contains(place)).map(|(_, individual)| individual).collect()
     }
 
-    /// NSGA-II survival among parents and offspring, of each structure only the best.
-    fn survivors(&self, parents: Vec<Individual>, offspring: Vec<Individual>) -> Vec<Individual> {
+    /// NSGA-II survival, of each structure only the best.
+    fn survivors(&self, rivals: Vec<Individual>) -> Vec<Individual> {
         let mut places = HashMap::new();
         let mut unique: Vec<Individual> = Vec::new();
-        for individual in parents.into_iter().chain(offspring) {
+        for individual in rivals {
             match places.get(&individual.tree.structure()) {
                 Some(&place) => {
                     let standing: &mut Individual = &mut unique[place];
@@ -263,6 +267,71 @@ impl<'w> Search<'w> {
         }
         let survivors = ranking::survivors(&unique.iter().collect::<Vec<_>>(), self.settings.population);
         survivors.into_iter().map(|place| unique[place].clone()).collect()
+    }
+
+    fn trials<'a>(&'a self, stop: &'a AtomicBool) -> Trials<'a> {
+        Trials { task: self.task, settings: &self.settings, stop }
+    }
+
+    /// A run that costs more than the worst of the population decides nothing any more.
+    fn hopeless(&self) -> f64 {
+        let population = &self.state.population;
+        let costs = population.iter().filter_map(Individual::cost);
+        let is_full = population.len() == self.settings.population && population.iter().all(|one| one.cost().is_some());
+        if is_full { costs.fold(0.0, f64::max) } else { f64::INFINITY }
+    }
+
+    /// The front of a run whose objectives are made from trials, judged by trials that the search has not seen; its knee is the
+    /// simplest member that is as good as the best. Of another run [`front`](Self::front). `None` if stopped.
+    pub fn confirmed_front(&self, stop: &AtomicBool) -> Option<Vec<FrontMember>> {
+        if !self.settings.objectives.need_trials() {
+            return Some(self.front());
+        }
+        let places = self.front_places().into_iter();
+        let mut members: Vec<Individual> = places.map(|place| self.state.population[place].clone()).collect();
+        members.retain(|member| member.tree.network(self.settings.steepness).is_ok());
+        if !members.iter().all(Individual::is_feasible) {
+            return Some(self.front());
+        }
+        let network = |member: &Individual| member.tree.network(self.settings.steepness).ok();
+        self.refine(&mut members, stop)?;
+        let networks: Vec<_> = members.iter().filter_map(network).collect();
+        for (member, costs) in members.iter_mut().zip(self.trials(stop).fresh(&networks)?) {
+            member.trials = costs;
+            member.value_trials(&self.settings.objectives);
+        }
+        let front = ranking::non_dominated(&members.iter().collect::<Vec<_>>());
+        let mut front: Vec<&Individual> = front.into_iter().map(|place| &members[place]).collect();
+        front.sort_by(|a, b| lexicographic(&a.objectives, &b.objectives));
+        let tried = front.iter().map(|one| Tried { complexity: one.tree.size() as f64, costs: &one.trials });
+        let chosen = parsimonious(&tried.collect::<Vec<_>>());
+        let knee = |place: usize| Knee { parsimony: chosen == Some(place), ..Knee::default() };
+        Some(front.iter().enumerate().filter_map(|(place, member)| self.member(member, knee(place))).collect())
+    }
+
+    /// Refines the best of these. `None` if stopped.
+    fn refine(&self, members: &mut [Individual], stop: &AtomicBool) -> Option<()> {
+        let mut best: Vec<usize> = (0..members.len()).collect();
+        best.sort_by(|&a, &b| members[a].cost().partial_cmp(&members[b].cost()).unwrap_or(Ordering::Equal));
+        best.truncate(MOST_REFINED);
+        let each = self.settings.refining_evaluations() / best.len().max(1);
+        let mut evaluator = self.task.evaluator(&self.settings);
+        for (nth, &place) in best.iter().enumerate() {
+            members[place] = refined(&self.trials(stop), &mut evaluator, &members[place], each, nth as u64)?;
+        }
+        Some(())
+    }
+
+    /// `None` for a tree whose network cannot be made.
+    fn member(&self, individual: &Individual, knee: Knee) -> Option<FrontMember> {
+        Some(FrontMember {
+            network: individual.tree.network(self.settings.steepness).ok()?,
+            nodes: individual.tree.size(),
+            f2: individual.f2,
+            further: self.settings.objectives.further(&individual.objectives),
+            violation: individual.violation,
+            knee,
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! What decides a run besides the scenario.
 
 use super::objectives::Objectives;
+use crate::evaluation::{ConstraintNames, SMALLEST_CLEARANCE};
 use crate::model::variation::MotifSet;
 use grn_optimisers::de;
 use serde::{Deserialize, Serialize};
@@ -9,6 +10,9 @@ use std::fmt;
 /// The largest budget: some hours. The history of its 12,500 generations, written with every checkpoint, takes two
 /// megabytes.
 pub const MOST_EVALUATIONS: usize = 10_000_000;
+
+/// The most trials of a model.
+pub const MOST_REALITIES: usize = 1000;
 
 /// Everything that decides a run besides the scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +38,12 @@ pub struct Settings {
     pub mutation: f64,
     /// Differential evolution of each new individual's θ.
     pub de: DeSettings,
+    /// What a pattern must keep to.
+    pub constraints: ConstraintNames,
+    /// The clearance that the constraint of this name asks for, scenario metres; what a body needs at the blobs' scale if not given.
+    pub clearance: Option<f64>,
+    /// Trials of a model on the front, 1 to [`MOST_REALITIES`]; without effect if no objective is made from trials.
+    pub realities: usize,
 }
 
 /// Parameters of DE/rand/1/bin.
@@ -64,6 +74,9 @@ impl Default for Settings {
             crossover: 1.0,
             mutation: 0.1,
             de: DeSettings { population: 10, weight: 0.5, crossover: 0.9, generations: 1 },
+            constraints: ConstraintNames::PAPER,
+            clearance: Some(SMALLEST_CLEARANCE),
+            realities: 16,
         }
     }
 }
@@ -81,9 +94,31 @@ impl fmt::Display for SettingsError {
 impl std::error::Error for SettingsError {}
 
 impl Settings {
+    /// Settings for controllers that adapt: nodes and the closed loop are minimised under all constraints.
+    pub fn adaptive() -> Self {
+        Settings {
+            objectives: Objectives::adaptive(),
+            constraints: ConstraintNames::ALL,
+            clearance: None,
+            ..Settings::default()
+        }
+    }
+
     /// Evaluations one individual costs.
     pub fn evaluations_each(&self) -> usize {
         self.de.population * (1 + self.de.generations)
+    }
+
+    /// What of the budget is kept for refining the best models on the closed loop: a fifth, or what the first generation leaves;
+    /// nothing if no objective is made from trials.
+    pub fn refining_evaluations(&self) -> usize {
+        let left = self.evaluations.saturating_sub(self.least_evaluations());
+        if self.objectives.need_trials() { left.min(self.evaluations / 5) } else { 0 }
+    }
+
+    /// What of the budget the search has.
+    pub fn searching_evaluations(&self) -> usize {
+        self.evaluations - self.refining_evaluations()
     }
 
     /// Evaluations of the first generation.
@@ -108,6 +143,10 @@ impl Settings {
             (
                 self.evaluations > MOST_EVALUATIONS,
                 format!("evaluations = {}: at most {MOST_EVALUATIONS} are possible", self.evaluations),
+            ),
+            (
+                !(1..=MOST_REALITIES).contains(&self.realities),
+                format!("realities = {}: 1 to {MOST_REALITIES} are possible", self.realities),
             ),
             (!(0.0..=1.0).contains(&self.crossover), format!("crossover = {} is no probability", self.crossover)),
             (!(0.0..=1.0).contains(&self.mutation), format!("mutation = {} is no probability", self.mutation)),

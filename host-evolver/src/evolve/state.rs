@@ -25,6 +25,9 @@ pub struct Milestone {
     pub evaluations: usize,
     /// Best f2 of a feasible model, if there is one.
     pub best_f2: Option<f64>,
+    /// Least mean cost of a feasible model in its trials, if one was tried.
+    #[serde(default)]
+    pub best_cost: Option<f64>,
     /// Feasible models kept: in the population, or the best one of a method that keeps one.
     pub feasible: usize,
     /// Models on the feasible non-dominated front.

@@ -1,12 +1,17 @@
 use super::objective::{Candidate, Nodes, RingError};
 use super::*;
-use crate::evaluation::World;
+use crate::simulation::usual_config;
+use firmware_sim::config::SwarmConfig;
+use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario::Scenario;
 use std::sync::atomic::AtomicBool;
 
-fn channel() -> World {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/channel.toml");
-    World::new(Scenario::load(path).unwrap())
+fn scenario(name: &str) -> Scenario {
+    Scenario::load(format!("{}/../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn channel() -> Task {
+    Task::in_one(scenario("channel"), usual_config(0.25, Laboratory::default()))
 }
 
 fn small() -> Settings {
@@ -21,14 +26,14 @@ fn run(search: &mut Search<'_>, threads: usize) {
 
 #[test]
 fn threads_and_interruptions_change_nothing() {
-    let world = channel();
-    let mut one = Search::new(&world, small(), None).unwrap();
+    let task = channel();
+    let mut one = Search::new(&task, small(), None).unwrap();
     run(&mut one, 1);
-    let mut four = Search::new(&world, small(), None).unwrap();
+    let mut four = Search::new(&task, small(), None).unwrap();
     run(&mut four, 4);
     assert_eq!(one.state(), four.state());
 
-    let mut first = Search::new(&world, small(), None).unwrap();
+    let mut first = Search::new(&task, small(), None).unwrap();
     let (go, stop) = (AtomicBool::new(false), AtomicBool::new(true));
     first.advance(&go, &|_| {});
     first.advance(&go, &|_| {});
@@ -36,15 +41,15 @@ fn threads_and_interruptions_change_nothing() {
     assert_eq!(first.advance(&stop, &|_| {}), Advance::Interrupted);
     assert_eq!(first.state(), &before);
     let saved = serde_json::to_string(first.state()).unwrap();
-    let mut resumed = Search::new(&world, small(), Some(serde_json::from_str(&saved).unwrap())).unwrap();
+    let mut resumed = Search::new(&task, small(), Some(serde_json::from_str(&saved).unwrap())).unwrap();
     run(&mut resumed, 2);
     assert_eq!(one.state(), resumed.state());
 }
 
 #[test]
 fn the_budget_is_spent_to_the_last_whole_individual() {
-    let world = channel();
-    let mut search = Search::new(&world, small(), None).unwrap();
+    let task = channel();
+    let mut search = Search::new(&task, small(), None).unwrap();
     run(&mut search, 2);
     assert_eq!(search.state().evaluations, 12 * 20 * 4 + 60);
     assert_eq!(search.state().generation, 5);
@@ -53,8 +58,8 @@ fn the_budget_is_spent_to_the_last_whole_individual() {
 
 #[test]
 fn survivors_have_different_structures_and_never_lose_the_best() {
-    let world = channel();
-    let mut search = Search::new(&world, small(), None).unwrap();
+    let task = channel();
+    let mut search = Search::new(&task, small(), None).unwrap();
     run(&mut search, 2);
     let mut structures: Vec<_> = search.state().population.iter().map(|i| i.tree.structure()).collect();
     structures.sort();
@@ -66,9 +71,9 @@ fn survivors_have_different_structures_and_never_lose_the_best() {
 
 #[test]
 fn different_seeds_give_different_runs() {
-    let world = channel();
+    let task = channel();
     let mut fronts = [1, 2].map(|seed| {
-        let mut search = Search::new(&world, Settings { seed, ..small() }, None).unwrap();
+        let mut search = Search::new(&task, Settings { seed, ..small() }, None).unwrap();
         run(&mut search, 2);
         search.front()
     });
@@ -78,7 +83,7 @@ fn different_seeds_give_different_runs() {
 
 #[test]
 fn senseless_settings_are_refused_by_name() {
-    let world = channel();
+    let task = channel();
     for (settings, word) in [
         (Settings { population: 1, ..small() }, "population"),
         (Settings { evaluations: 10, ..small() }, "evaluations"),
@@ -86,7 +91,7 @@ fn senseless_settings_are_refused_by_name() {
         (Settings { depth: (3, 2), ..small() }, "depth"),
         (Settings { de: DeSettings { population: 2, ..small().de }, ..small() }, "population"),
     ] {
-        let error = Search::new(&world, settings, None).err().unwrap().to_string();
+        let error = Search::new(&task, settings, None).err().unwrap().to_string();
         assert!(error.contains(word), "{error}");
     }
 }
@@ -108,9 +113,9 @@ impl Objective for Depth {
 
 #[test]
 fn a_third_objective_needs_nothing_but_itself() {
-    let world = channel();
+    let task = channel();
     let objectives = Objectives::new(vec![&Nodes, &RingError, &Depth]).unwrap();
-    let mut search = Search::new(&world, Settings { objectives, ..small() }, None).unwrap();
+    let mut search = Search::new(&task, Settings { objectives, ..small() }, None).unwrap();
     run(&mut search, 2);
     let front = search.front();
     let values: Vec<[f64; 3]> = front.iter().map(|m| [m.nodes as f64, m.f2, m.further[0]]).collect();
@@ -125,31 +130,77 @@ fn a_third_objective_needs_nothing_but_itself() {
     }
 }
 
+/// A run that is tried on swarms, small enough for a test.
+fn tried() -> Settings {
+    Settings { population: 6, evaluations: 6 * 20 * 3, realities: 3, ..Settings::adaptive() }
+}
+
+/// A swarm whose run is short.
+fn quick() -> Task {
+    let swarm = usual_config(0.25, Laboratory::default());
+    let scenarios = ["channel", "open"].map(scenario).to_vec();
+    Task::new(scenarios, SwarmConfig { target_speed_m_per_s: 0.1, ..swarm }).unwrap()
+}
+
 #[test]
-fn an_objective_is_computed_once_for_every_individual() {
-    use std::sync::atomic::{AtomicUsize, Ordering};
-    static ASKED: AtomicUsize = AtomicUsize::new(0);
-    struct Counted;
-    impl Objective for Counted {
-        fn name(&self) -> &'static str {
-            "counted"
-        }
-        fn description(&self) -> &'static str {
-            "always 0"
-        }
-        fn value(&self, _: &Candidate<'_>) -> f64 {
-            ASKED.fetch_add(1, Ordering::Relaxed);
-            0.0
-        }
-    }
-    let world = channel();
-    let objectives = Objectives::new(vec![&Nodes, &RingError, &Counted]).unwrap();
-    let settings = Settings { objectives, ..small() };
-    let each = settings.evaluations_each();
-    let mut search = Search::new(&world, settings, None).unwrap();
+fn trials_depend_on_neither_threads_nor_interruptions() {
+    let task = quick();
+    let go = AtomicBool::new(false);
+    let confirmed = |search: &Search<'_>, threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| search.confirmed_front(&go)).unwrap()
+    };
+    let mut one = Search::new(&task, tried(), None).unwrap();
+    run(&mut one, 1);
+    let mut first = Search::new(&task, tried(), None).unwrap();
+    first.advance(&go, &|_| {});
+    let saved = serde_json::to_string(first.state()).unwrap();
+    let mut resumed = Search::new(&task, tried(), Some(serde_json::from_str(&saved).unwrap())).unwrap();
+    run(&mut resumed, 3);
+    assert_eq!(one.state(), resumed.state());
+    assert_eq!(confirmed(&one, 1), confirmed(&resumed, 3));
+    let stop = AtomicBool::new(true);
+    assert!(one.confirmed_front(&stop).is_none());
+}
+
+#[test]
+fn who_is_on_the_front_has_had_all_trials_and_others_few() {
+    let task = quick();
+    let mut search = Search::new(&task, tried(), None).unwrap();
     run(&mut search, 2);
-    search.front();
-    assert_eq!(ASKED.load(Ordering::Relaxed), search.state().evaluations / each);
+    let population = &search.state().population;
+    let trials = |individual: &Individual| individual.trials.len();
+    assert!(population.iter().filter(|one| one.is_feasible()).all(|one| trials(one) >= 2));
+    assert!(population.iter().filter(|one| !one.is_feasible()).all(|one| trials(one) == 0));
+    let best =
+        population.iter().filter(|one| one.is_feasible()).min_by(|a, b| a.cost().partial_cmp(&b.cost()).unwrap());
+    assert_eq!(best.map(trials), Some(3));
+    let least = search.state().history.last().and_then(|last| last.best_cost);
+    assert_eq!(best.and_then(Individual::cost), least);
+}
+
+#[test]
+fn the_knee_of_tried_models_is_confirmed_by_trials_that_the_search_has_not_seen() {
+    let task = quick();
+    let mut search = Search::new(&task, tried(), None).unwrap();
+    run(&mut search, 2);
+    let front = search.confirmed_front(&AtomicBool::new(false)).unwrap();
+    assert_eq!(front.iter().filter(|member| member.knee.parsimony).count(), 1);
+    assert!(front.iter().all(|member| !member.knee.angle && !member.knee.utility));
+    let costs: Vec<f64> = front.iter().map(|member| member.further[0]).collect();
+    assert!(costs.windows(2).all(|pair| pair[1] < pair[0]), "{costs:?}");
+    let seen: Vec<f64> = search.state().population.iter().filter_map(Individual::cost).collect();
+    assert!(costs.iter().all(|cost| !seen.contains(cost)), "these would be the trials of the search: {costs:?}");
+}
+
+#[test]
+fn worlds_with_different_morphogens_have_no_common_model() {
+    let swarm = usual_config(0.25, Laboratory::default());
+    let other = scenario("channel").to_toml().replace("target_width = 1.5", "target_width = 1.4");
+    let other = Scenario::parse(&other).unwrap();
+    let error = Task::new(vec![scenario("open"), scenario("channel"), other], swarm.clone()).unwrap_err();
+    assert!(error.to_string().contains("worlds 1 and 3 have different [morphogen]"), "{error}");
+    assert_eq!(Task::new(Vec::new(), swarm).unwrap_err(), TaskError::NoWorld);
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! Whose folder it is: a run's or a campaign's, as its manifest tells.
 
 use super::error::FileError;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Folders within those of runs and campaigns that hold their own files only.
-const FILLED: [&str; 5] = ["front", "simulation", "runs", "trials", "typical"];
+const FILLED: [&str; 6] = ["front", "simulation", "simulations", "runs", "trials", "typical"];
+/// How those of the worlds of a run in several begin.
+const SIMULATION_OF_WORLD: &str = "simulation-";
 
 /// What a folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +35,7 @@ pub fn owner(folder: &Path) -> Option<Owner> {
     if manifest.get("campaign").is_some() {
         return Some(Owner::Campaign);
     }
-    manifest.get("scenario").map(|_| Owner::Run)
+    manifest.get("scenarios").map(|_| Owner::Run)
 }
 
 /// Refuses a folder that a run or a campaign further up fills with its own files.
@@ -41,7 +43,8 @@ pub(super) fn check_place(folder: &Path) -> Result<(), FileError> {
     let Some(place) = resolved(folder) else { return Ok(()) };
     for above in place.ancestors().skip(1) {
         let Some(first) = place.strip_prefix(above).ok().and_then(|below| below.components().next()) else { continue };
-        let filled = FILLED.iter().find(|&&name| first == Component::Normal(name.as_ref()));
+        let name = first.as_os_str().to_string_lossy();
+        let filled = (FILLED.contains(&&*name) || name.starts_with(SIMULATION_OF_WORLD)).then_some(name);
         if let Some((name, owner)) = filled.zip(owner(above)) {
             let (above, owner) = (above.display(), owner.words());
             let fault = format!("{name} in {above} is filled by {owner}; choose a folder elsewhere with --out");

@@ -66,12 +66,12 @@ fn check(state: &State, settings: &Settings) -> Result<(), String> {
     if history.len() != *generation as usize || history.last().map(|last| last.evaluations) != Some(*evaluations) {
         return Err(format!("its history does not end at generation {generation}"));
     }
-    let objectives = settings.objectives.names().count();
-    population.iter().try_for_each(|individual| check_individual(individual, objectives))
+    population.iter().try_for_each(|individual| check_individual(individual, settings))
 }
 
-fn check_individual(individual: &Individual, count: usize) -> Result<(), String> {
-    let Individual { tree, objectives, f2, violation } = individual;
+fn check_individual(individual: &Individual, settings: &Settings) -> Result<(), String> {
+    let count = settings.objectives.names().count();
+    let Individual { tree, objectives, f2, violation, trials } = individual;
     let (low, high) = (f64::from(THETA_RANGE.0), f64::from(THETA_RANGE.1));
     let theta = tree.thetas().into_iter().find(|theta| !(low..=high).contains(theta));
     match theta {
@@ -79,6 +79,9 @@ fn check_individual(individual: &Individual, count: usize) -> Result<(), String>
         None if !(0.0..=2.0).contains(f2) => Err(format!("f2 = {f2} is not in [0, 2]")),
         None if objectives.len() != count || !objectives.iter().all(|value| value.is_finite()) => {
             Err(format!("objectives = {objectives:?} are not {count} finite numbers"))
+        }
+        None if trials.len() > settings.realities || !trials.iter().all(|cost| cost.is_finite() && *cost >= 0.0) => {
+            Err(format!("trials = {trials:?} are not at most {} finite costs", settings.realities))
         }
         None if violation.is_nan() || *violation < 0.0 => Err(format!("violation = {violation} is negative")),
         None => Ok(()),

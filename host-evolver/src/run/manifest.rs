@@ -1,6 +1,6 @@
 //! What a run was made from, and which files it has left.
 
-use crate::evolve::Settings;
+use crate::evolve::{Settings, Task};
 use crate::files::{self, FileError, Ledger, Owner};
 use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario::Scenario;
@@ -10,6 +10,16 @@ use std::path::Path;
 
 pub(super) const MANIFEST: &str = "manifest.json";
 
+/// A world that a run evolves for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Origin {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its canonical text, hexadecimal; the text lies beside the manifest.
+    pub sha256: String,
+}
+
 /// What a run was made from; equal ones give equal results. And the files that it has left.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -18,15 +28,13 @@ pub struct Manifest {
     pub grn: String,
     /// Blob format version.
     pub blob_format: u8,
-    /// Name of the scenario.
-    pub scenario: String,
-    /// SHA-256 of the scenario's canonical text, hexadecimal; the text lies beside the manifest.
-    pub scenario_sha256: String,
+    /// The worlds that it evolves for, in order.
+    pub scenarios: Vec<Origin>,
     /// Settings of the search, seed included.
     pub settings: Settings,
     /// World metres per model metre of the blobs.
     pub scale: f32,
-    /// The laboratory in which the knee is simulated, whole.
+    /// The laboratory in which models are tried and the knee is simulated, whole.
     pub laboratory: Laboratory,
     /// Whether all files are there.
     pub finished: bool,
@@ -36,15 +44,16 @@ pub struct Manifest {
 
 impl Manifest {
     /// The manifest of a run by this software, at its beginning.
-    pub fn new(scenario: &Scenario, settings: Settings, scale: f32, laboratory: Laboratory) -> Self {
+    pub fn new(task: &Task, settings: Settings) -> Self {
+        let origin =
+            |scenario: &Scenario| Origin { name: scenario.name().into(), sha256: files::sha256(scenario.to_toml()) };
         Manifest {
             grn: files::VERSION.into(),
             blob_format: FORMAT_VERSION,
-            scenario: scenario.name().into(),
-            scenario_sha256: files::sha256(scenario.to_toml()),
+            scenarios: task.scenarios().map(origin).collect(),
             settings,
-            scale,
-            laboratory,
+            scale: task.scale(),
+            laboratory: task.swarm().lab.clone(),
             finished: false,
             files: Ledger::default(),
         }

@@ -45,10 +45,10 @@ pub fn channel() -> PathBuf {
     repository("scenarios/channel.toml")
 }
 
-/// `grn evolve` in the channel with the budget of so many whole generations.
+/// `grn evolve --paper` in the channel with the budget of so many whole generations.
 pub fn evolve(folder: &Path, generations: usize, more: &[&str]) -> Command {
     let mut command = grn();
-    command.arg("evolve").arg(channel()).arg("--out").arg(folder);
+    command.arg("evolve").arg(channel()).arg("--paper").arg("--out").arg(folder);
     command.arg("--evaluations").arg((generations * 800).to_string()).args(more);
     command
 }

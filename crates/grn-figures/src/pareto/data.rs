@@ -6,6 +6,9 @@ use grn_optimisers::knee::Knee;
 
 /// The words and the mark of a knee; none for a point that is no knee.
 pub(crate) fn knee_look(knee: Knee) -> Option<(&'static str, Mark)> {
+    if knee.parsimony {
+        return Some(("knee (parsimony)", Mark::Diamond));
+    }
     match (knee.angle, knee.utility) {
         (true, true) => Some(("knee (both)", Mark::Diamond)),
         (true, false) => Some(("knee (angle)", Mark::Triangle)),

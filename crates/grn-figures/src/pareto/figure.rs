@@ -137,7 +137,9 @@ fn entries(points: &[ParetoPoint], front: &[usize]) -> Vec<(Key, &'static str)> 
     if front.iter().any(|&i| !points[i].is_knee()) {
         add(front_look(Knee::default()), "non-dominated");
     }
-    let kinds = [(true, true), (true, false), (false, true)].map(|(angle, utility)| Knee { angle, utility });
+    let kinds = [(true, true), (true, false), (false, true)];
+    let kinds = kinds.map(|(angle, utility)| Knee { angle, utility, parsimony: false });
+    let kinds = [kinds[0], kinds[1], kinds[2], Knee { parsimony: true, ..Knee::default() }];
     let present: Vec<Knee> = kinds.into_iter().filter(|kind| front.iter().any(|&i| points[i].knee == *kind)).collect();
     for &kind in &present {
         let only = kind == kinds[0] && present.len() == 1;
@@ -159,8 +161,8 @@ mod tests {
     use super::*;
     use crate::chart::check::read;
 
-    const NONE: Knee = Knee { angle: false, utility: false };
-    const BOTH: Knee = Knee { angle: true, utility: true };
+    const NONE: Knee = Knee { angle: false, utility: false, parsimony: false };
+    const BOTH: Knee = Knee { angle: true, utility: true, parsimony: false };
 
     fn point(nodes: u32, f2: f64, feasible: bool, knee: Knee, label: &str) -> ParetoPoint {
         ParetoPoint { nodes, f2, feasible, knee, label: label.to_owned() }

@@ -97,9 +97,10 @@ fn look(point: &ObjectivesPoint) -> (Mark, f64, Paint) {
 fn entries(points: &[ObjectivesPoint]) -> Vec<(Key, &'static str)> {
     let kinds = [
         ("non-dominated", true, true, Knee::default()),
-        ("knee of the first two (angle)", true, true, Knee { angle: true, utility: false }),
-        ("knee of the first two (utility)", true, true, Knee { angle: false, utility: true }),
-        ("knee of the first two", true, true, Knee { angle: true, utility: true }),
+        ("knee of the first two (angle)", true, true, Knee { angle: true, utility: false, parsimony: false }),
+        ("knee of the first two (utility)", true, true, Knee { angle: false, utility: true, parsimony: false }),
+        ("knee of the first two", true, true, Knee { angle: true, utility: true, parsimony: false }),
+        ("knee (parsimony)", true, true, Knee { angle: false, utility: false, parsimony: true }),
         ("dominated", false, true, Knee::default()),
         ("infeasible", false, false, Knee::default()),
     ];

@@ -1,19 +1,17 @@
 //! What an objective is and what it sees.
 
-use crate::evaluation::{Evaluation, Model, World};
+use crate::evaluation::Evaluation;
 use crate::model::tree::Tree;
 
-/// What an objective is computed from: a model whose θ have been tuned, seen once.
+/// What an objective is computed from: a model whose θ have been tuned.
 #[derive(Clone, Copy)]
 pub struct Candidate<'a> {
     /// The tree with its θ.
     pub tree: &'a Tree,
-    /// The model that its blob holds; `None` if it has no pattern.
-    pub model: Option<&'a Model>,
-    /// The paper's f2 and the constraint violation in the world.
+    /// The paper's f2 and the constraint violation in the worlds.
     pub evaluation: Evaluation,
-    /// The world it was evaluated in.
-    pub world: &'a World,
+    /// The cost of each simulated run so far.
+    pub trials: &'a [f64],
 }
 
 /// Something to be minimised.
@@ -24,4 +22,8 @@ pub trait Objective: Sync {
     fn description(&self) -> &'static str;
     /// Its value, less is better.
     fn value(&self, candidate: &Candidate<'_>) -> f64;
+    /// Whether it is made from simulated runs.
+    fn needs_trials(&self) -> bool {
+        false
+    }
 }

@@ -106,7 +106,7 @@ impl Scenario {
     ///
     /// # Errors
     /// [`InputError`] for text that is not TOML, unknown or missing keys, numbers out of the ranges in [`limits`], alone or
-    /// together, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS), two targets on the same
+    /// together, no target or more than [`MOST_TARGETS`](limits::MOST_TARGETS), two targets on the same
     /// path, a time without a target, paths that leave the region or enter a wall, walls that run into a target, and polygons
     /// that are none.
     pub fn parse(text: &str) -> Result<Scenario, InputError> {
@@ -148,7 +148,7 @@ impl Scenario {
         self.start.as_ref()
     }
 
-    /// The targets, 1 to 4 of them.
+    /// The targets, 1 to 10 of them.
     pub fn targets(&self) -> &[Target] {
         &self.targets
     }

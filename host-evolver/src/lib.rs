@@ -13,6 +13,7 @@ pub mod evolve;
 pub mod faults;
 pub mod figures;
 pub mod files;
+pub mod missions;
 pub mod model;
 pub mod pattern_length;
 pub mod quoting;

@@ -7,6 +7,7 @@ mod disc;
 mod evasion;
 mod file;
 pub mod limits;
+mod meant;
 mod moving;
 mod obstacles;
 mod path;
@@ -24,6 +25,7 @@ pub use disc::Disc;
 pub use evasion::Evasion;
 pub use grn_input::InputError;
 pub use limits::MAX_SNAPSHOTS;
+pub use meant::MeantSwarm;
 pub use moving::{Motion, MovingWall};
 pub use path::Path;
 pub use presence::Presence;
@@ -80,6 +82,7 @@ pub struct Scenario {
     duration_s: Option<f64>,
     morphogen: Morphogen,
     ring: Ring,
+    meant_swarm: Option<MeantSwarm>,
     start: Option<Start>,
     targets: Vec<Target>,
     /// Polygons, then the outlines of the discs.
@@ -283,6 +286,7 @@ impl Scenario {
                 d_obstacle: d_obstacle * factor,
                 steepness: steepness / factor,
             },
+            meant_swarm: self.meant_swarm,
             start: self.start.as_ref().map(|start| start.scaled(factor)),
             targets: self.targets.iter().map(|target| target.scaled(factor)).collect(),
             fixed_walls: Walls::new(fixed.chain(fixed_discs.iter().map(Disc::outline)).collect()),

@@ -24,3 +24,4 @@ pub mod run;
 pub mod sectors;
 pub mod simulation;
 pub mod slot_file;
+pub mod survey;

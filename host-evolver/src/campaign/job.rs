@@ -122,7 +122,8 @@ impl<'p> Maker<'p> {
         let blob = Blob::decode(knee).map_err(Refusal::internal)?;
         let Some(simulate) = &self.plan.simulate else { return Err(Refusal::internal("nothing is simulated")) };
         let numbers = 1..=simulate.realities;
-        match realities::try_all(&blob, scenario, &simulate.config(), simulate.number, numbers, stop, &|| ()) {
+        let config = scenario.configured(simulate.config());
+        match realities::try_all(&blob, scenario, &config, simulate.number, numbers, stop, &|| ()) {
             Ok(robustness) => Ok(robustness.map(|robustness| files::csv_records(&robustness.realities))),
             // Some runs find nothing that drives a robot: that is a result, too.
             Err(SimulationError::Load(_) | SimulationError::NoPattern(_)) => Ok(Some(Vec::new())),

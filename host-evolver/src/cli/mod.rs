@@ -21,6 +21,7 @@ mod scatter;
 mod show;
 mod simulate;
 mod snippet;
+mod survey;
 mod trial;
 
 use crate::files::FolderLock;
@@ -52,8 +53,10 @@ enum Command {
     Lab(lab::Arguments),
     /// Throw round obstacles at random around the targets' paths of a scenario.
     Scatter(scatter::Arguments),
-    /// Draw worlds at random that a swarm can pass, each with a laboratory.
+    /// Draw worlds at random that a swarm can pass, each for a swarm of its own.
     Missions(missions::Arguments),
+    /// Try controllers in many missions, and count in how many they cage the targets.
+    Survey(survey::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
     Show(show::Arguments),
     /// Bring a blob onto a robot, or write it for a programmer.
@@ -142,6 +145,7 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Lab(arguments) => lab::run(arguments),
         Command::Scatter(arguments) => scatter::run(arguments),
         Command::Missions(arguments) => missions::run(arguments),
+        Command::Survey(arguments) => survey::run(arguments),
         Command::Flash(arguments) => flash::run(arguments),
         Command::Robots(arguments) => robots::run(arguments),
         Command::Confirm(arguments) => trial::run(arguments, trial::End::Confirm),

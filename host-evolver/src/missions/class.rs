@@ -1,7 +1,10 @@
 //! The kinds of missions.
 
+use std::fmt;
+use std::str::FromStr;
+
 /// What stands in the way of a mission's targets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
     /// Two long walls.
     Corridor,
@@ -42,5 +45,25 @@ impl Class {
             Class::SweepingBar => "sweeping-bar",
             Class::DriftingDisc => "drifting-disc",
         }
+    }
+}
+
+/// No class has this name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownClass;
+
+impl fmt::Display for UnknownClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "must be one of {}", Class::ALL.map(Class::name).join(", "))
+    }
+}
+
+impl std::error::Error for UnknownClass {}
+
+impl FromStr for Class {
+    type Err = UnknownClass;
+
+    fn from_str(name: &str) -> Result<Class, UnknownClass> {
+        Class::ALL.into_iter().find(|class| class.name() == name).ok_or(UnknownClass)
     }
 }

@@ -1,43 +1,36 @@
-//! A mission: a world and the laboratory that it is for.
+//! A mission: a world with the swarm that it is meant for.
 
 use super::class::Class;
 use super::draw::{centimetres, chance, rounded, whole};
 use super::layout::{Course, Frame, Layout, Obstacle, Shape};
 use super::obstacles::{Plan, drawn};
 use super::robots::starts;
+use super::sampling::Sampling;
 use core::fmt::Write;
 use firmware_sim::random::{Component, Stream};
 use firmware_sim::scenario::{InputError, Path, Scenario};
 use grn_core::geometry::{Point, Vector};
 
-/// The most targets of a mission.
-const MOST_TARGETS: usize = 10;
-/// How probable a single target is; more are equally probable.
-const SINGLE: f64 = 0.5;
 /// From one target to the next, metres along the way.
 const SPACING: [f64; 2] = [1.5, 3.0];
-/// Robots for each target.
-const ROBOTS: [usize; 2] = [10, 20];
 /// Mothers for each target.
 const MOTHERS: usize = 2;
-/// From the way to the nearest wall, metres.
-const CLEARANCE: [f64; 2] = [0.6, 1.2];
 /// How far targets go from one snapshot to the next, metres, unless that makes too many.
 const SNAPSHOT_SPACING: f64 = 0.5;
 const MOST_SNAPSHOTS: usize = 51;
 
-/// A world, and the laboratory that it is for.
+/// A world with the swarm that it is meant for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mission {
-    /// Its name, and that of its files.
+    /// Its name, and that of its file.
     pub name: String,
     /// Its class.
     pub class: Class,
-    /// What determines everything about it but the name.
+    /// What determines all of it but its name, together with the sampling.
     pub seed: u64,
     /// How many robots it is for.
     pub robots: usize,
-    /// Whether walls stop radio in its laboratory.
+    /// Whether walls stop their radio.
     pub walls_block: bool,
     /// No wall is ever nearer to the path of a target, metres.
     pub clearance: f64,
@@ -50,14 +43,14 @@ impl Mission {
     ///
     /// # Errors
     /// A world that is refused, which would be a fault of this program.
-    pub fn drawn(seed: u64, number: usize, class: Class) -> Result<Mission, InputError> {
+    pub fn drawn(seed: u64, number: usize, sampling: &Sampling) -> Result<Mission, InputError> {
+        let class = sampling.class_of(number);
         let own_seed = Stream::new(seed, Component::Missions, number).seed();
         let name = format!("{number:04}-{}", class.name());
         let mut stream = Stream::new(own_seed, Component::Missions, class as usize);
-        let targets = if chance(&mut stream, SINGLE) { 1 } else { whole(&mut stream, 2, MOST_TARGETS) };
-        let robots = targets * whole(&mut stream, ROBOTS[0], ROBOTS[1]);
+        let (targets, robots) = sampling.swarm(&mut stream);
         let walls_block = chance(&mut stream, 0.5);
-        let clearance = centimetres(&mut stream, CLEARANCE);
+        let clearance = centimetres(&mut stream, sampling.clearance());
         let spacing = centimetres(&mut stream, SPACING);
         let plan = Plan { clearance, convoy: rounded(spacing * (targets - 1) as f64) };
         let (layout, travel) = drawn(class, &plan, &mut stream);
@@ -72,45 +65,28 @@ impl Mission {
             paths.iter().map(|path| (path[0], (path[1] - path[0]).direction().unwrap_or(Vector::ZERO))).collect();
         let places = starts(robots, &ways, &scenario.walls_at(0.0), scenario.region(), &mut stream);
         let places: Vec<[f64; 2]> = places.into_iter().map(|place| [place.x, place.y]).collect();
-        let scenario = Scenario::parse(&format!("{world}\n[start]\npositions = {places:?}\n"))?;
+        let mothers = MOTHERS * targets;
+        let swarm = format!("[swarm]\nrobots = {robots}\nmothers = {mothers}\nwalls_block_radio = {walls_block}\n");
+        let scenario = Scenario::parse(&format!("{world}\n{swarm}\n[start]\npositions = {places:?}\n"))?;
         Ok(Mission { name, class, seed: own_seed, robots, walls_block, clearance, scenario })
     }
 
-    /// Name of the file of its world.
-    pub fn world_file(&self) -> String {
+    /// Name of its file.
+    pub fn file(&self) -> String {
         format!("{}.toml", self.name)
     }
 
-    /// Name of the file of its laboratory.
-    pub fn laboratory_file(&self) -> String {
-        format!("{}.lab.toml", self.name)
-    }
-
-    /// The file of its world.
-    pub fn world(&self) -> String {
+    /// Its file: the world, with what it is.
+    pub fn text(&self) -> String {
         let targets = self.scenario.targets().len();
         let targets = if targets == 1 { "one target".to_owned() } else { format!("{targets} targets") };
         format!(
-            "# A mission of the class {}: {targets}, {} robots; its laboratory is {}.\n\
-             # No wall is ever nearer than {} m to a target's path. Robots' starts have room at scale 0.25 and above.\n{}",
+            "# A mission of the class {}: {targets}, {} robots. No wall is ever nearer than {} m to a target's path, and\n\
+             # robots have room where they begin at a scale of 0.25 and more.\n{}",
             self.class.name(),
             self.robots,
-            self.laboratory_file(),
             self.clearance,
             self.scenario.to_toml()
-        )
-    }
-
-    /// The file of its laboratory: `ideal`, but for the number of robots and what walls do to radio.
-    pub fn laboratory(&self) -> String {
-        format!(
-            "# For the mission {}.\nname = \"{}\"\nbase = \"ideal\"\n\n[robots]\ncount = {}\nmothers = {}\n\n[radio]\n\
-             walls_block = {}\n",
-            self.world_file(),
-            self.name,
-            self.robots,
-            MOTHERS * self.scenario.targets().len(),
-            self.walls_block
         )
     }
 }
@@ -171,31 +147,35 @@ fn world_text(name: &str, layout: &Layout, frame: &Frame, paths: &[Vec<Point<f64
 mod tests {
     use super::*;
     use firmware_sim::config::SwarmConfig;
-    use firmware_sim::{lab, swarm};
+    use firmware_sim::swarm;
 
     fn drawn(seed: u64, count: usize) -> impl Iterator<Item = Mission> {
-        (0..count).map(move |number| Mission::drawn(seed, number, Class::ALL[number % Class::ALL.len()]).unwrap())
+        (0..count).map(move |number| Mission::drawn(seed, number, &Sampling::default()).unwrap())
+    }
+
+    /// Where the targets are on their way, every few centimetres.
+    fn ways(world: &Scenario) -> Vec<Point<f64>> {
+        let steps = |target: &firmware_sim::scenario::Target| (target.path().length() / 0.05).ceil() as usize;
+        let of_target = |target| {
+            let last = steps(target);
+            (0..=last).map(move |step| target.path().at(step as f64 / last as f64))
+        };
+        world.targets().iter().flat_map(of_target).collect()
     }
 
     #[test]
     fn every_mission_is_passable_and_its_swarm_fits() {
-        let mut targets = [0; MOST_TARGETS + 1];
+        let mut targets = [0; 11];
         let mut robots = Vec::new();
+        let mut blocked = 0;
         for mission in drawn(1, 140) {
             let world = &mission.scenario;
-            let ways: Vec<Point<f64>> = world
-                .targets()
-                .iter()
-                .flat_map(|target| (0..=60).map(|step| target.path().at(f64::from(step) / 60.0)))
-                .collect();
-            let mut clearance = f64::INFINITY;
-            for moment in 0..=100 {
-                let walls = world.walls_at(f64::from(moment) / 100.0);
-                clearance = ways.iter().map(|&place| walls.signed_distance(place)).fold(clearance, f64::min);
-                if !world.walls_change() {
-                    break;
-                }
-            }
+            let ways = ways(world);
+            let moments = if world.walls_change() { 100 } else { 0 };
+            let clearance = (0..=moments)
+                .map(|moment| world.walls_at(f64::from(moment) / 100.0))
+                .flat_map(|walls| ways.iter().map(|&place| walls.signed_distance(place)).collect::<Vec<_>>())
+                .fold(f64::INFINITY, f64::min);
             let stated = mission.clearance;
             assert!(clearance >= stated - 1e-6, "{}: {clearance} instead of {stated}", mission.name);
             assert!(clearance < stated + 0.7, "{}: {clearance} instead of {stated}", mission.name);
@@ -205,22 +185,67 @@ mod tests {
                 "{}: an obstacle is faster than the targets",
                 mission.name
             );
-            let lab = lab::parse(&mission.laboratory()).unwrap();
-            assert_eq!((lab.robots.count, lab.radio.walls_block), (mission.robots, mission.walls_block));
-            swarm::check(world, &SwarmConfig { lab, ..SwarmConfig::default() }).unwrap();
-            assert_eq!(&Scenario::parse(&mission.world()).unwrap(), world);
+            let config = world.configured(SwarmConfig::default());
+            assert_eq!((config.lab.robots.count, config.lab.radio.walls_block), (mission.robots, mission.walls_block));
+            assert_eq!(config.lab.robots.mothers, 2 * world.targets().len());
+            swarm::check(world, &config).unwrap();
+            assert_eq!(&Scenario::parse(&mission.text()).unwrap(), world);
             targets[world.targets().len()] += 1;
             robots.push(mission.robots);
+            blocked += usize::from(mission.walls_block);
         }
         assert!(targets[1] > 50 && targets[2..].iter().all(|&count| count > 0), "{targets:?}");
         robots.sort_unstable();
         assert!(robots[0] >= 10 && robots[0] < 14 && robots[139] > 150 && robots[139] <= 200, "{robots:?}");
+        assert!((50..=90).contains(&blocked), "{blocked}");
+    }
+
+    /// From the first target's start to its end over a lattice, always the clearance away from every wall that stands still.
+    #[test]
+    fn a_flood_at_the_clearance_gets_through() {
+        const STEP: f64 = 0.05;
+        for mission in drawn(3, 21) {
+            let world = &mission.scenario;
+            let walls = world.fixed_walls();
+            let [width, height] = world.region().map(|side| (side / STEP) as i32);
+            let is_free = |(x, y): (i32, i32)| {
+                let place = Vector::new(f64::from(x) * STEP, f64::from(y) * STEP);
+                // Nodes of the lattice lie beside the way.
+                walls.signed_distance(place) >= mission.clearance - STEP
+            };
+            let node = |place: Point<f64>| ((place.x / STEP).round() as i32, (place.y / STEP).round() as i32);
+            let path = world.targets()[0].path();
+            let (start, end) = (node(path.at(0.0)), node(path.at(1.0)));
+            let mut seen = std::collections::BTreeSet::from([start]);
+            let mut edge = vec![start];
+            while let Some((x, y)) = edge.pop() {
+                for next in [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)] {
+                    let inside = (0..=width).contains(&next.0) && (0..=height).contains(&next.1);
+                    if inside && is_free(next) && seen.insert(next) {
+                        edge.push(next);
+                    }
+                }
+            }
+            assert!(seen.contains(&end), "{}", mission.name);
+        }
     }
 
     #[test]
     fn equal_seeds_draw_equal_missions_and_others_do_not() {
-        let text = |seed| drawn(seed, 14).map(|mission| mission.world() + &mission.laboratory()).collect::<String>();
+        let text = |seed| drawn(seed, 14).map(|mission| mission.text()).collect::<String>();
         assert_eq!(text(5), text(5));
         assert_ne!(text(5), text(6));
+    }
+
+    #[test]
+    fn narrow_and_wide_ways_are_drawn_for_every_class() {
+        for clearance in [0.3, 3.0] {
+            let sampling = Sampling::new(&[], [1, 10], [10, 200], [clearance; 2]).unwrap();
+            for number in 0..28 {
+                let mission = Mission::drawn(9, number, &sampling).unwrap();
+                assert_eq!(mission.clearance, clearance);
+                swarm::check(&mission.scenario, &mission.scenario.configured(SwarmConfig::default())).unwrap();
+            }
+        }
     }
 }

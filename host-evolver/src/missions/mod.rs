@@ -2,12 +2,15 @@
 //!
 //! How a mission is drawn:
 //!
-//! 1. Its number of targets, of robots, the clearance of the way and whether walls block radio.
+//! 1. Its number of targets, of robots, the clearance of the way and whether walls block radio, as `sampling` allows.
 //! 2. `obstacles` lays out what its class puts beside the way, in a plane of its own, `layout` turns and mirrors it into a region.
 //! 3. Several targets go one behind the other; each goes a part of the same way, and all pass all obstacles.
 //! 4. `robots` places the robots behind the targets.
-//! 5. `difficulty` measures what an adaptive pattern can gain there.
+//! 5. `difficulty` measures what an adaptive pattern can gain there, and `table` has a line on it.
+//!
+//! `circle` is the controller that keeps to the best circle, which does not adapt.
 
+mod circle;
 mod class;
 mod difficulty;
 mod draw;
@@ -15,7 +18,12 @@ mod layout;
 mod mission;
 mod obstacles;
 mod robots;
+pub mod sampling;
+mod table;
 
-pub use class::Class;
+pub use circle::Circle;
+pub use class::{Class, UnknownClass};
 pub use difficulty::Difficulty;
 pub use mission::Mission;
+pub use sampling::Sampling;
+pub use table::{MissionRow, TABLE};

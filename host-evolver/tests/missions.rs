@@ -9,7 +9,7 @@ use support::*;
 
 fn missions(folder: &Path, more: &[&str]) -> Command {
     let mut command = grn();
-    command.args(["missions", "--seed", "3", "--out"]).arg(folder).args(more);
+    command.args(["missions", "--out"]).arg(folder).args(more);
     command
 }
 

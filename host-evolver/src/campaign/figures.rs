@@ -8,6 +8,7 @@ use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
 use crate::figures::{self, Pictures};
 use crate::files::{Contents, FileError, read_blob};
+use crate::run::of_world;
 use grn_figures::FigureError;
 use grn_optimisers::statistics::quartiles;
 use std::path::Path;
@@ -38,27 +39,27 @@ pub(super) fn draw(
     if !rates.groups.is_empty() {
         pictures.add_pages("transfers", grn_figures::rates(&rates));
     }
-    let simulated = simulated(&scenarios, tables);
+    let simulated = simulated(plan, tables);
     if !simulated.groups.is_empty() {
         pictures.add_pages("simulations", grn_figures::rates(&simulated));
     }
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
-        let world = World::new(planned.scenario.clone());
+        let worlds: Vec<World> = planned.worlds.iter().cloned().map(World::new).collect();
+        let first = &planned.worlds[0];
         for (method, planned_method) in plan.methods.iter().enumerate() {
             let Some(unit) = typical(plan, tables, place, method) else { continue };
-            let name = |what: &str| {
-                format!("typical/{}/{}/{what}.svg", slug(planned.scenario.name()), slug(&planned_method.name))
-            };
+            let name =
+                |what: &str| format!("typical/{}/{}/{what}.svg", slug(&planned.name), slug(&planned_method.name));
             let front = unit.front(plan, campaign)?;
-            pictures.add(
-                &name("pareto"),
-                figures::front(&planned_method.method.objectives(), &front, &[], &planned.scenario.ring()),
-            );
+            pictures
+                .add(&name("pareto"), figures::front(&planned_method.method.objectives(), &front, &[], &first.ring()));
             let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
             pictures.add(&name("tree"), Ok(figures::tree(&network)));
             pictures.add(&name("grn"), figures::grn(&network));
-            if let Ok(model) = Model::new(&network, planned.scenario.morphogen().level) {
-                pictures.add(&name("pattern"), figures::pattern(&world, &model));
+            if let Ok(model) = Model::new(&network, first.morphogen().level) {
+                for (place, world) in worlds.iter().enumerate() {
+                    pictures.add(&name(&of_world("pattern", place, worlds.len(), "")), figures::pattern(world, &model));
+                }
             }
         }
     }
@@ -68,9 +69,9 @@ pub(super) fn draw(
 
 /// The run whose knee has the median f2 of a method in a scenario.
 fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Option<Unit> {
-    let (scenario_name, method_name) = (plan.scenarios[scenario].scenario.name(), &plan.methods[method].name);
+    let (scenario_name, method_name) = (&plan.scenarios[scenario].name, &plan.methods[method].name);
     let mut rows: Vec<&RunRow> =
-        tables.runs.iter().filter(|run| run.scenario == scenario_name && run.method == *method_name).collect();
+        tables.runs.iter().filter(|run| run.scenario == *scenario_name && run.method == *method_name).collect();
     rows.sort_by(|a, b| Measure::KneeF2.of(a).total_cmp(&Measure::KneeF2.of(b)).then(a.seed.cmp(&b.seed)));
     let seed = rows.get(rows.len().saturating_sub(1) / 2)?.seed;
     Some(Unit { scenario, method, seed })
@@ -88,12 +89,12 @@ fn boxes(
         _ => (run.best_violation == 0.0).then(|| measure.of(run)),
     };
     let panel = |planned: &&PlannedScenario| grn_figures::BoxPanel {
-        title: planned.scenario.name().into(),
+        title: planned.name.clone(),
         groups: plan
             .methods
             .iter()
             .map(|method| {
-                let of_it = |run: &&RunRow| run.scenario == planned.scenario.name() && run.method == method.name;
+                let of_it = |run: &&RunRow| run.scenario == planned.name && run.method == method.name;
                 let values = tables.runs.iter().filter(of_it).map(value).collect();
                 grn_figures::BoxGroup { label: method.name.clone(), values }
             })
@@ -119,7 +120,7 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceF
             let points = (0..moments).filter_map(point).collect();
             series.push(grn_figures::ConvergenceSeries { label: planned_method.name.clone(), points });
         }
-        panels.push(grn_figures::ConvergencePanel { title: planned.scenario.name().into(), series });
+        panels.push(grn_figures::ConvergencePanel { title: planned.name.clone(), series });
     }
     Ok(grn_figures::ConvergenceFigure { panels, y_label: Measure::Hypervolume.words().into() })
 }
@@ -128,7 +129,7 @@ fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
     let is_varied =
         |row: &TransferRow| plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer);
     let mut groups: Vec<grn_figures::RateGroup> = Vec::new();
-    for row in tables.transfers.iter().filter(|row| row.trials() > 1 && !is_varied(row)) {
+    for row in tables.transfers.iter().filter(|row| row.trials() > 1 && row.world.is_empty() && !is_varied(row)) {
         let title = match row.from.as_str() {
             "" => format!("given models in {}", row.transfer),
             from => format!("evolved for {from}, in {}", row.transfer),
@@ -147,19 +148,28 @@ fn rates(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
     grn_figures::RatesFigure { groups, x_label: "worlds with the pattern kept throughout, %".into() }
 }
 
-fn simulated(scenarios: &[&PlannedScenario], tables: &Tables) -> grn_figures::RatesFigure {
-    let group = |planned: &&PlannedScenario| {
-        let name = planned.scenario.name();
-        let rows: Vec<&SimulationSummary> = tables.simulated.iter().filter(|row| row.scenario == name).collect();
-        let title = format!("knees in {name}, laboratory {}", rows.first()?.laboratory);
-        let rows = rows.into_iter().map(|row| grn_figures::RateRow {
+/// Knees in their training worlds and in those of transfers, all worlds of a group together.
+fn simulated(plan: &Plan, tables: &Tables) -> grn_figures::RatesFigure {
+    let is_varied = |row: &SimulationSummary| {
+        let scenario = plan.scenarios.iter().any(|planned| planned.varied && planned.name == row.scenario);
+        scenario || plan.transfers.iter().any(|planned| planned.varied && planned.name == row.transfer)
+    };
+    let mut groups: Vec<grn_figures::RateGroup> = Vec::new();
+    for row in tables.simulated.iter().filter(|row| row.world.is_empty() && !is_varied(row)) {
+        let title = match row.transfer.as_str() {
+            "" => format!("knees in {}, laboratory {}", row.scenario, row.laboratory),
+            transfer => format!("knees of {} in {transfer}, laboratory {}", row.scenario, row.laboratory),
+        };
+        let line = grn_figures::RateRow {
             label: row.method.clone(),
             successes: row.works as u64,
-            trials: (row.runs * row.realities) as u64,
+            trials: row.simulations() as u64,
             interval: row.low.zip(row.high),
-        });
-        Some(grn_figures::RateGroup { title, rows: rows.collect() })
-    };
-    let groups = scenarios.iter().filter_map(group).collect();
+        };
+        match groups.iter_mut().find(|group| group.title == title) {
+            Some(group) => group.rows.push(line),
+            None => groups.push(grn_figures::RateGroup { title, rows: vec![line] }),
+        }
+    }
     grn_figures::RatesFigure { groups, x_label: "simulations that work, %".into() }
 }

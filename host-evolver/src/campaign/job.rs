@@ -4,7 +4,7 @@ use super::method::Outcome;
 use super::plan::{Place, Plan};
 use super::unit::Unit;
 use crate::evaluation::{Evaluation, Evaluator, Model, World};
-use crate::evolve::{FrontMember, Task};
+use crate::evolve::{FrontMember, Task, TaskError};
 use crate::files::{self, Contents, FileError};
 use crate::model::deploy::{self, DEFAULT_SCALE};
 use crate::realities;
@@ -31,8 +31,8 @@ pub enum Job {
     },
     /// The realities of a knee.
     Simulations {
-        /// Place of the scenario that it is simulated in.
-        scenario: usize,
+        /// The world.
+        world: Place,
         /// Its blob.
         knee: Vec<u8>,
     },
@@ -81,7 +81,7 @@ impl From<FileError> for Refusal {
 pub struct Maker<'p> {
     plan: &'p Plan,
     /// What runs in each scenario are for; many runs share one.
-    tasks: Vec<OnceLock<Task>>,
+    tasks: Vec<OnceLock<Result<Task, TaskError>>>,
 }
 
 impl<'p> Maker<'p> {
@@ -98,21 +98,21 @@ impl<'p> Maker<'p> {
         match job {
             &Job::Run(unit) => Ok(self.run(unit, stop)?.map(Product::Run)),
             Job::Trials { world, models } => Ok(trials(self.plan.world(*world), models, stop)?.map(Product::Trials)),
-            Job::Simulations { scenario, knee } => {
-                let scenario = &self.plan.scenarios[*scenario].scenario;
-                Ok(self.simulations(scenario, knee, stop)?.map(Product::Simulations))
+            Job::Simulations { world, knee } => {
+                Ok(self.simulations(self.plan.world(*world), knee, stop)?.map(Product::Simulations))
             }
         }
     }
 
-    fn run(&self, unit: Unit, stop: &AtomicBool) -> Result<Option<Contents>, FileError> {
+    fn run(&self, unit: Unit, stop: &AtomicBool) -> Result<Option<Contents>, Refusal> {
         let planned = &self.plan.scenarios[unit.scenario];
         let task = self.tasks[unit.scenario].get_or_init(|| self.plan.task(unit.scenario));
+        let task = task.as_ref().map_err(Refusal::internal)?;
         let method = &self.plan.methods[unit.method].method;
         let Some(Outcome { front, history }) = method.run(task, planned.evaluations, unit.seed, stop) else {
             return Ok(None);
         };
-        let morphogen = planned.scenario.morphogen();
+        let morphogen = planned.worlds[0].morphogen();
         let blob_of = |member: &FrontMember| deploy::blob(member.network.clone(), &morphogen, DEFAULT_SCALE);
         let (contents, _) = results::contents(&method.objectives(), &front, &history, blob_of, "")?;
         Ok(Some(contents))

@@ -111,7 +111,7 @@ impl Method {
                 }
                 Some(outcome)
             }
-            Method::EhGrn { structure } => baseline(&task.worlds()[0], *structure, evaluations, seed, stop),
+            Method::EhGrn { structure } => baseline(task.worlds(), *structure, evaluations, seed, stop),
         }
     }
 }
@@ -140,8 +140,14 @@ fn deploy_best(objectives: &Objectives, front: &mut [FrontMember]) {
     }
 }
 
-fn baseline(world: &World, structure: Structure, evaluations: usize, seed: u64, stop: &AtomicBool) -> Option<Outcome> {
-    let (tuned, history) = eh_grn::search(structure, world, evaluations, seed, stop)?;
+fn baseline(
+    worlds: &[World],
+    structure: Structure,
+    evaluations: usize,
+    seed: u64,
+    stop: &AtomicBool,
+) -> Option<Outcome> {
+    let (tuned, history) = eh_grn::search(structure, worlds, evaluations, seed, stop)?;
     let front = vec![FrontMember {
         network: structure.network(&tuned.thetas)?,
         nodes: structure.nodes(),

@@ -12,10 +12,12 @@ mod method;
 mod part;
 mod plan;
 mod plan_file;
+mod plan_worlds;
 mod rows;
 mod simulate;
 mod simulated;
 mod tables;
+mod tables_of_worlds;
 mod team;
 mod trial;
 mod unit;
@@ -130,12 +132,11 @@ impl Campaign {
     pub fn work(&self) -> u64 {
         let runs: usize =
             Unit::all(&self.plan).into_iter().map(|unit| self.plan.scenarios[unit.scenario].evaluations).sum();
-        let knees = |from: &[String]| from.len() as u64 * self.plan.methods.len() as u64 * self.plan.seeds;
-        let models = self.plan.models.len() as u64;
-        let trials: u64 = self.plan.transfers.iter().map(|t| t.worlds.len() as u64 * (models + knees(&t.from))).sum();
-        let knees = Unit::all(&self.plan).len() as u64;
-        let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| knees * simulate.worth());
-        runs as u64 + trials + models * self.plan.scenarios.len() as u64 + simulations
+        let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| {
+            let knee = |unit: Unit| self.plan.simulated_in(unit.scenario).len() as u64;
+            Unit::all(&self.plan).into_iter().map(knee).sum::<u64>() * simulate.worth()
+        });
+        runs as u64 + self.plan.trials() + simulations
     }
 
     /// Whether runs of another folder can be taken over into `folder`: before it is made, and before others are copied.
@@ -204,9 +205,9 @@ impl Campaign {
         let Some(trials) = part::complete(&parts, &site, team)? else { return Ok(Stage::Trials) };
         let knees = Knee::all(&self.plan, self.folder())?;
         let Some(realities) = part::complete(&knees, &site, team)? else { return Ok(Stage::Trials) };
-        let trials = parts.iter().zip(trials).map(|(part, trials)| (part.name, part.number, trials)).collect();
-        let simulations: Vec<_> = knees.iter().map(|knee| knee.unit).zip(realities).collect();
-        let tables = Tables::of(&self.plan, self.folder(), trials, &simulations)?;
+        let trials: Vec<_> = parts.iter().map(|part| (part.name, part.world_name())).zip(trials).collect();
+        let simulations: Vec<_> = knees.iter().map(|knee| (knee.unit, knee.place)).zip(realities).collect();
+        let tables = Tables::of(&self.plan, self.folder(), &trials, &simulations)?;
         let mut contents = figures::draw(&self.plan, &tables, self.folder(), &|text| listener.notice(text))?;
         contents.extend(tables.contents());
         self.manifest.publish(self.folder(), &contents)?;
@@ -286,12 +287,12 @@ fn paths(plan: &Plan) -> Vec<PathBuf> {
     let units = Unit::all(plan).into_iter().filter(|unit| unit.seed == plan.seeds);
     let runs = units.map(|unit| unit.folder(plan).join("00-31-nodes.grn"));
     let names = plan.transfers.iter().map(|planned| planned.name.as_str());
-    let names = names.chain(plan.scenarios.iter().map(|planned| planned.scenario.name()));
+    let names = names.chain(plan.scenarios.iter().map(|planned| planned.name.as_str()));
     let trials = names.map(|name| Path::new(Trials::FOLDER).join(slug(name)).join("000-0123456789ab.csv"));
     let units = Unit::all(plan).into_iter().filter(|unit| plan.simulate.is_some() && unit.seed == plan.seeds);
-    let simulations = units.map(|unit| {
-        let folder = Path::new(Knee::FOLDER).join(slug(plan.scenarios[unit.scenario].scenario.name()));
-        folder.join(slug(&plan.methods[unit.method].name)).join("000-0123456789ab.csv")
+    let simulations = units.flat_map(|unit| {
+        let folder = move |place| Knee::folder(plan, unit, place).join("000-0123456789ab.csv");
+        plan.simulated_in(unit.scenario).into_iter().map(folder)
     });
     runs.chain(trials).chain(simulations).collect()
 }

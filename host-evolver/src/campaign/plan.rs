@@ -2,13 +2,13 @@
 
 use super::method::Method;
 use super::simulate::Simulate;
-use crate::evolve::Task;
+use crate::evolve::{Task, TaskError};
 use crate::files;
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
-use grn_input::file_name;
+use grn_input::{InputError, file_name};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
@@ -37,15 +37,57 @@ impl Plan {
     }
 
     /// What runs in the scenario at this place are for.
-    pub fn task(&self, scenario: usize) -> Task {
-        Task::in_one(self.scenarios[scenario].scenario.clone(), self.swarm())
+    ///
+    /// # Errors
+    /// None for a plan that was [loaded](Plan::load).
+    pub fn task(&self, scenario: usize) -> Result<Task, TaskError> {
+        Task::new(self.scenarios[scenario].worlds.clone(), self.swarm())
+    }
+
+    /// The worlds that knees of the scenario at this place are simulated in, if any are: those that it trains for, then those of
+    /// transfers from it. Not those with obstacles thrown at random, which are many.
+    pub fn simulated_in(&self, scenario: usize) -> Vec<Place> {
+        let PlannedScenario { name, worlds, .. } = &self.scenarios[scenario];
+        let own = (0..worlds.len()).map(|world| Place::Scenario(scenario, world));
+        let transfers = self.transfers.iter().enumerate();
+        let transfers = transfers.filter(|(_, transfer)| !transfer.random && transfer.from.contains(name));
+        let others = transfers.flat_map(|(transfer, planned)| {
+            (0..planned.worlds.len()).map(move |world| Place::Transfer(transfer, world))
+        });
+        own.chain(others).collect()
+    }
+
+    /// Whether a swarm can be set up and a run ends in every world that knees are simulated in, if they are.
+    ///
+    /// # Errors
+    /// What is wrong, with the world's name.
+    pub fn check_simulations(&self) -> Result<(), InputError> {
+        let Some(simulate) = &self.simulate else { return Ok(()) };
+        let own = self.scenarios.iter().flat_map(|planned| &planned.worlds);
+        let others = self.transfers.iter().filter(|planned| !planned.random).flat_map(|planned| &planned.worlds);
+        simulate.check(own.chain(others))
+    }
+
+    /// How many models are tried in how many worlds, altogether.
+    pub fn trials(&self) -> u64 {
+        let knees = self.methods.len() as u64 * self.seeds;
+        let models = self.models.len() as u64;
+        let own = self.scenarios.iter().map(|planned| {
+            let knees = if planned.worlds.len() > 1 { knees } else { 0 };
+            planned.worlds.len() as u64 * (models + knees)
+        });
+        let transfers = self.transfers.iter();
+        let others = transfers.map(|t| t.worlds.len() as u64 * (models + t.from.len() as u64 * knees));
+        own.chain(others).sum()
     }
 }
 
-/// A world with its budget.
+/// One or several worlds to train for, with the budget.
 pub struct PlannedScenario {
-    /// The world; its name is the scenario's name in all tables.
-    pub scenario: Scenario,
+    /// Its name in all tables.
+    pub name: String,
+    /// The training worlds: a model is worth the mean of what it is in each.
+    pub worlds: Vec<Scenario>,
     /// Budget of each run: evaluations of f2.
     pub evaluations: usize,
     /// Whether it is a variation of another.
@@ -70,7 +112,7 @@ pub struct PlannedModel {
     pub blob: Blob,
 }
 
-/// A transfer: worlds that nothing is evolved for.
+/// A transfer: test worlds, which no search of it has seen.
 pub struct PlannedTransfer {
     /// Its name in the tables.
     pub name: String,
@@ -78,6 +120,8 @@ pub struct PlannedTransfer {
     pub from: Vec<String>,
     /// The worlds.
     pub worlds: Vec<Scenario>,
+    /// Whether they are one world with obstacles thrown in at random.
+    pub random: bool,
     /// Whether it is a variation of another.
     pub varied: bool,
 }
@@ -85,9 +129,9 @@ pub struct PlannedTransfer {
 /// Where a world stands in a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
-    /// That of a scenario.
-    Scenario(usize),
-    /// One of a transfer's.
+    /// One of a scenario's: the place of the scenario, and the world's in it.
+    Scenario(usize, usize),
+    /// One of a transfer's, likewise.
     Transfer(usize, usize),
 }
 
@@ -95,7 +139,7 @@ impl Plan {
     /// The world at a place of this plan.
     pub fn world(&self, place: Place) -> &Scenario {
         match place {
-            Place::Scenario(scenario) => &self.scenarios[scenario].scenario,
+            Place::Scenario(scenario, world) => &self.scenarios[scenario].worlds[world],
             Place::Transfer(transfer, world) => &self.transfers[transfer].worlds[world],
         }
     }
@@ -105,8 +149,8 @@ impl Plan {
         let Plan { name, seeds, scenarios, methods, models, transfers, simulate } = self;
         let mut text = format!("{}\n{name}\n{seeds}\n", files::VERSION);
         // Writing to memory cannot fail.
-        for PlannedScenario { scenario, evaluations, varied } in scenarios {
-            let _ = writeln!(text, "{} {evaluations} {varied}", scenario.to_toml());
+        for PlannedScenario { name, worlds, evaluations, varied } in scenarios {
+            let _ = writeln!(text, "{name} {} {evaluations} {varied}", text_of(worlds));
         }
         for PlannedMethod { name, baseline, method } in methods {
             let _ = writeln!(text, "{name} {baseline} {}", files::json(method));
@@ -114,15 +158,19 @@ impl Plan {
         for PlannedModel { name, blob } in models {
             let _ = writeln!(text, "{name} {blob:?}");
         }
-        for PlannedTransfer { name, from, worlds, varied } in transfers {
-            let worlds: String = worlds.iter().map(Scenario::to_toml).collect();
-            let _ = writeln!(text, "{name} {from:?} {varied} {worlds}");
+        for PlannedTransfer { name, from, worlds, random, varied } in transfers {
+            let _ = writeln!(text, "{name} {from:?} {random} {varied} {}", text_of(worlds));
         }
         if let Some(Simulate { lab, realities, seed, scale, speed_m_per_s, number }) = simulate {
             let _ = writeln!(text, "{realities} {seed} {scale} {speed_m_per_s} {number} {}", lab::write(lab));
         }
         files::sha256(text)
     }
+}
+
+/// The canonical texts of worlds, one after the other.
+pub fn text_of(worlds: &[Scenario]) -> String {
+    worlds.iter().map(Scenario::to_toml).collect()
 }
 
 /// The folder of something with this name, within a campaign's: small letters and digits, the rest as single dashes, as a
@@ -137,4 +185,18 @@ pub fn slug(name: &str) -> String {
         }
     }
     file_name(slug.trim_end_matches('-'))
+}
+
+/// Refuses the name of a `what` whose folder one of `others` has already.
+pub(super) fn check_folder<'a>(
+    key: &str,
+    what: &str,
+    name: &str,
+    mut others: impl Iterator<Item = &'a str>,
+) -> Result<(), InputError> {
+    let folder = slug(name);
+    let Some(other) = others.find(|other| slug(other) == folder) else { return Ok(()) };
+    let expected =
+        format!("another {what}, {other:?}, has the folder {folder} already; names must differ in letters or digits");
+    Err(InputError::new(key, format!("{name:?}"), expected))
 }

@@ -1,43 +1,34 @@
 //! The campaign file as it stands, and the checks that make it a [`Plan`].
 
 use super::method::{Deploys, Method};
-use super::plan::{Plan, PlannedMethod, PlannedModel, PlannedScenario, PlannedTransfer, slug};
+use super::plan::{Plan, PlannedMethod, PlannedModel, check_folder};
+use super::plan_worlds::{ScenarioTable, TransferTable, planned_scenarios, planned_transfers};
 use super::simulate::SimulateTable;
 use super::vary::Variations;
 use crate::evaluation::{ConstraintNames, Model};
 use crate::evolve::eh_grn::Structure;
-use crate::evolve::{MOST_EVALUATIONS, MOST_REALITIES, Objectives};
+use crate::evolve::{MOST_REALITIES, Objectives};
 use crate::files::read_blob;
 use crate::model::variation::{Inputs, MotifSet};
-use firmware_sim::scenario::{RandomObstacles, Scenario};
-use grn_input::{Found, InputError, Pair, Range, check_name};
+use grn_input::{Found, InputError, Range, check_name};
 use serde::Deserialize;
 use std::path::Path;
 
 /// The most methods of a campaign: figures tell so many apart.
 const MOST_METHODS: usize = 6;
-/// The most worlds to evolve for, variations included: each is kept with its walls.
-const MOST_SCENARIOS: usize = 200;
 /// The most runs: each is a folder, and all are looked for at every start.
 const MOST_RUNS: u64 = 100_000;
 /// The most evaluations of all runs: ten days at a tenth of a millisecond each.
 const MOST_WORK: u64 = 10_000_000_000;
 /// The most models tried in worlds, one line of 100 bytes in memory each.
 const MOST_TRIALS: u64 = 1_000_000;
-/// The most worlds of random obstacles altogether: each is kept with its walls, which takes a quarter of a megabyte.
-const MOST_RANDOM_WORLDS: u64 = 1000;
 
 /// Runs of one method in one scenario.
 const SEEDS: Range<i64> = Range::new(1, 10_000, "(a whole one)");
-/// Evaluations of a run.
-const EVALUATIONS: Range<i64> = Range::new(1, MOST_EVALUATIONS as i64, "(a whole one)");
 /// Generations of DE: with 1000, one generation of the search takes 400,400 evaluations.
 const DE_GENERATIONS: Range<i64> = Range::new(0, 1000, "(a whole one)");
 /// Trials of models on the front.
 const REALITIES: Range<i64> = Range::new(1, MOST_REALITIES as i64, "(a whole one)");
-const RANDOM_WORLDS: Range<i64> = Range::new(1, MOST_RANDOM_WORLDS as i64, "(a whole one)");
-/// Seeds of worlds: TOML's integers, with room for the worlds that follow the first.
-const RANDOM_SEED: Range<i64> = Range::new(0, i64::MAX - MOST_RANDOM_WORLDS as i64, "(a whole one)");
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -55,13 +46,6 @@ pub(super) struct PlanFile {
     #[serde(default)]
     vary: Variations,
     simulate: Option<SimulateTable>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ScenarioTable {
-    file: String,
-    evaluations: i64,
 }
 
 /// All keys that some algorithm has; which of them is right follows from the algorithm. (An enum of tables would not tell
@@ -98,25 +82,6 @@ struct ModelTable {
     file: String,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct TransferTable {
-    name: String,
-    from: Vec<String>,
-    file: String,
-    random: Option<RandomTable>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RandomTable {
-    worlds: i64,
-    seed: i64,
-    density: f64,
-    radius: Pair,
-    clearance: f64,
-}
-
 impl PlanFile {
     /// The plan; files it names are relative to `folder`.
     pub(super) fn checked(self, folder: &Path) -> Result<Plan, InputError> {
@@ -134,7 +99,7 @@ impl PlanFile {
         }
         check_names("method", methods.iter().map(|method| method.name.as_str()))?;
         check_names("model", models.iter().map(|model| model.name.as_str()))?;
-        check_names("transfer", transfers.iter().map(|transfer| transfer.name.as_str()))?;
+        check_names("transfer", transfers.iter().map(TransferTable::name))?;
         vary.check()?;
         let methods = planned_methods(methods)?;
         let scenarios = planned_scenarios(scenarios, &methods, &vary, folder)?;
@@ -142,10 +107,8 @@ impl PlanFile {
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let transfers = planned_transfers(transfers, &scenarios, &vary, folder)?;
         let simulate = simulate.map(|table| table.checked(folder)).transpose()?;
-        if let Some(simulate) = &simulate {
-            simulate.check(scenarios.iter().map(|planned| &planned.scenario))?;
-        }
         let plan = Plan { name: self.name, seeds, scenarios, methods, models, transfers, simulate };
+        plan.check_simulations()?;
         check_work(&plan)?;
         Ok(plan)
     }
@@ -153,22 +116,14 @@ impl PlanFile {
 
 /// Names that are names, and lead to folders of their own.
 fn check_names<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), InputError> {
-    let mut seen: Vec<(String, &str)> = Vec::new();
+    let mut seen: Vec<&str> = Vec::new();
     for (place, name) in names.enumerate() {
         let key = format!("{what}[{place}].name");
         check_name(&key, name)?;
-        check_folder(&key, what, name, &seen)?;
-        seen.push((slug(name), name));
+        check_folder(&key, what, name, seen.iter().copied())?;
+        seen.push(name);
     }
     Ok(())
-}
-
-fn check_folder(key: &str, what: &str, name: &str, seen: &[(String, &str)]) -> Result<(), InputError> {
-    let folder = slug(name);
-    let Some((_, other)) = seen.iter().find(|(taken, _)| *taken == folder) else { return Ok(()) };
-    let expected =
-        format!("another {what}, {other:?}, has the folder {folder} already; names must differ in letters or digits");
-    Err(InputError::new(key, format!("{name:?}"), expected))
 }
 
 fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, InputError> {
@@ -220,49 +175,6 @@ fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, Input
     tables.into_iter().enumerate().map(planned).collect()
 }
 
-fn planned_scenarios(
-    tables: Vec<ScenarioTable>,
-    methods: &[PlannedMethod],
-    vary: &Variations,
-    folder: &Path,
-) -> Result<Vec<PlannedScenario>, InputError> {
-    let mut scenarios: Vec<PlannedScenario> = Vec::new();
-    for (place, ScenarioTable { file, evaluations }) in tables.into_iter().enumerate() {
-        let key = format!("scenario[{place}].evaluations");
-        let evaluations = EVALUATIONS.check(&key, evaluations)? as usize;
-        if let Some(dear) = methods.iter().find(|planned| planned.method.least_evaluations() > evaluations) {
-            let least = dear.method.least_evaluations();
-            let expected =
-                format!("the first generation of method {:?} alone takes {least}; give so many or more", dear.name);
-            return Err(InputError::new(key, evaluations, expected));
-        }
-        let key = format!("scenario[{place}].file");
-        let original = world(&key, &file, folder)?;
-        for scenario in vary.of(&original)? {
-            let varied = scenario.name() != original.name();
-            let seen: Vec<_> =
-                scenarios.iter().map(|other| (slug(other.scenario.name()), other.scenario.name())).collect();
-            check_folder(&key, "scenario", scenario.name(), &seen)?;
-            scenarios.push(PlannedScenario { scenario, evaluations, varied });
-        }
-        if scenarios.len() > MOST_SCENARIOS {
-            let expected = format!(
-                "with its variations there are more than {MOST_SCENARIOS} worlds; make several campaigns of it"
-            );
-            return Err(InputError::new(key, format!("{file:?}"), expected));
-        }
-    }
-    Ok(scenarios)
-}
-
-/// The world in a file that the campaign names. What is wrong within that file is told with its own place.
-fn world(key: &str, file: &str, folder: &Path) -> Result<Scenario, InputError> {
-    Scenario::load(folder.join(file)).map_err(|error| match error.place() {
-        Some(_) => error,
-        None => InputError::new(key, format!("{file:?}"), error.to_string()).from_source(error),
-    })
-}
-
 fn planned_model(place: usize, table: ModelTable, folder: &Path) -> Result<PlannedModel, InputError> {
     let ModelTable { name, file } = table;
     let key = format!("model[{place}].file");
@@ -273,89 +185,15 @@ fn planned_model(place: usize, table: ModelTable, folder: &Path) -> Result<Plann
     Ok(PlannedModel { name, blob })
 }
 
-fn planned_transfers(
-    tables: Vec<TransferTable>,
-    scenarios: &[PlannedScenario],
-    vary: &Variations,
-    folder: &Path,
-) -> Result<Vec<PlannedTransfer>, InputError> {
-    let known: Vec<&str> = scenarios.iter().map(|planned| planned.scenario.name()).collect();
-    let mut transfers: Vec<PlannedTransfer> = Vec::new();
-    let mut random_worlds = 0;
-    for (place, TransferTable { name, from, file, random }) in tables.into_iter().enumerate() {
-        let key = |name: &str| format!("transfer[{place}].{name}");
-        for (index, scenario) in from.iter().enumerate() {
-            let key = key(&format!("from[{index}]"));
-            if !known.contains(&scenario.as_str()) {
-                let expected = format!("is no scenario of this campaign; there are {}", known.join(", "));
-                return Err(InputError::new(key, format!("{scenario:?}"), expected));
-            }
-            if from[..index].contains(scenario) {
-                return Err(InputError::new(key, format!("{scenario:?}"), "is named twice; name it once"));
-            }
-        }
-        let world = world(&key("file"), &file, folder)?;
-        let before = transfers.len();
-        match random {
-            Some(random) => {
-                random_worlds += RANDOM_WORLDS.check(&key("random.worlds"), random.worlds)? as u64;
-                if random_worlds > MOST_RANDOM_WORLDS {
-                    let expected = format!(
-                        "with this transfer there are {random_worlds} random worlds, of at most {MOST_RANDOM_WORLDS}"
-                    );
-                    return Err(InputError::new(key("random.worlds"), random.worlds, expected));
-                }
-                let worlds = random.worlds(&key("random."), &world)?;
-                transfers.push(PlannedTransfer { name, from, worlds, varied: false });
-            }
-            None => {
-                for varied in vary.of(&world)? {
-                    let change = varied.name().strip_prefix(world.name()).unwrap_or_default();
-                    transfers.push(PlannedTransfer {
-                        name: format!("{name}{change}"),
-                        from: from.iter().map(|from| format!("{from}{change}")).collect(),
-                        varied: !change.is_empty(),
-                        worlds: vec![varied],
-                    });
-                }
-            }
-        }
-        let (others, these) = transfers.split_at(before);
-        let names = known.iter().copied().chain(others.iter().map(|other| other.name.as_str()));
-        let seen: Vec<_> = names.map(|name| (slug(name), name)).collect();
-        for transfer in these {
-            check_folder(&key("name"), "world", &transfer.name, &seen)?;
-        }
-    }
-    Ok(transfers)
-}
-
-impl RandomTable {
-    fn worlds(&self, prefix: &str, world: &Scenario) -> Result<Vec<Scenario>, InputError> {
-        let RandomTable { worlds, seed, density, radius: Pair(radius), clearance } = *self;
-        let first = RANDOM_SEED.check(&format!("{prefix}seed"), seed)? as u64;
-        let obstacles = RandomObstacles { seed: first, density, radius, clearance };
-        obstacles.check(prefix, world.region())?;
-        let thrown = |seed| world.with_random_obstacles(&RandomObstacles { seed, ..obstacles });
-        let keyed =
-            |error: InputError| InputError::new(format!("{prefix}{}", error.key()), error.value(), error.expected());
-        (first..first + worlds as u64).map(|seed| thrown(seed).map_err(keyed)).collect()
-    }
-}
-
 /// What a campaign costs altogether.
 fn check_work(plan: &Plan) -> Result<(), InputError> {
     let runs = plan.scenarios.len() as u64 * plan.methods.len() as u64 * plan.seeds;
     let evaluations: u64 = plan.scenarios.iter().map(|planned| planned.evaluations as u64).sum();
     let work = evaluations * plan.methods.len() as u64 * plan.seeds;
-    let knees = |from: &[String]| from.len() as u64 * plan.methods.len() as u64 * plan.seeds;
-    let models = plan.models.len() as u64;
-    let tried = plan.transfers.iter().map(|t| t.worlds.len() as u64 * (models + knees(&t.from)));
-    let trials = tried.sum::<u64>() + models * plan.scenarios.len() as u64;
     let too_much = [
         (runs, MOST_RUNS, "runs of all methods in all scenarios"),
         (work, MOST_WORK, "evaluations of all runs"),
-        (trials, MOST_TRIALS, "trials of models in worlds"),
+        (plan.trials(), MOST_TRIALS, "trials of models in worlds"),
     ];
     match too_much.into_iter().find(|(count, most, _)| count > most) {
         Some((count, most, what)) => {

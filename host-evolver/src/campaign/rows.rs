@@ -20,7 +20,7 @@ pub enum Measure {
     KneeNodes,
     /// Share of the box below the reference that the feasible front dominates.
     Hypervolume,
-    /// Cost J of the knee on simulated swarms, mean over realities.
+    /// Cost J of the knee on simulated swarms, mean over training worlds and realities.
     Cost,
 }
 
@@ -99,8 +99,11 @@ pub struct RunRow {
     pub knee_violation: f64,
     /// Share of the box below the reference that the feasible front dominates.
     pub hypervolume: f64,
-    /// Cost J of the knee, mean over the realities in which it was simulated; nothing if it was not, or cannot drive a robot.
+    /// Cost J of the knee, mean over the realities in which it was simulated in the training worlds; nothing if it was not, or cannot
+    /// drive a robot.
     pub cost: Option<f64>,
+    /// The same in the training world in which it is highest.
+    pub worst_cost: Option<f64>,
 }
 
 /// Quartiles over the seeds: a line of `summary.csv`.
@@ -150,8 +153,10 @@ pub struct Comparison {
 /// A success rate over runs and worlds: a line of `transfers.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TransferRow {
-    /// The worlds tried in.
+    /// The transfer tried in, or the scenario.
     pub transfer: String,
+    /// Which of its worlds; empty: all of them together.
+    pub world: String,
     /// The scenario evolved for; empty for a given model.
     pub from: String,
     /// The method, or the given model's name.
@@ -174,15 +179,19 @@ pub struct TransferRow {
     pub median_f2: f64,
 }
 
-/// What became of a run's knee in simulated laboratories: a line of `simulations.csv`.
+/// What became of a run's knee in simulated laboratories, in one world: a line of `simulations.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationRow {
-    /// Scenario evolved for, which it was simulated in.
+    /// Scenario evolved for.
     pub scenario: String,
     /// Method.
     pub method: String,
     /// Seed of the run.
     pub seed: u64,
+    /// The transfer that the world is of; empty for a training world.
+    pub transfer: String,
+    /// The world simulated in.
+    pub world: String,
     /// The laboratory.
     pub laboratory: String,
     /// Realities around it.
@@ -204,18 +213,25 @@ pub struct SimulationRow {
     pub radial_error: Option<f64>,
 }
 
-/// All knees of a method in simulated laboratories: a line of `simulation-summary.csv`.
+/// All knees of a method in simulated laboratories, in the training worlds or those of a transfer: a line of
+/// `simulation-summary.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulationSummary {
-    /// Scenario.
+    /// Scenario evolved for.
     pub scenario: String,
     /// Method.
     pub method: String,
+    /// The transfer that the worlds are of; empty for the training worlds.
+    pub transfer: String,
+    /// Which of the worlds; empty: all of them together.
+    pub world: String,
     /// The laboratory.
     pub laboratory: String,
     /// Knees that were simulated.
     pub runs: usize,
-    /// Realities of each.
+    /// Worlds that each was simulated in.
+    pub worlds: usize,
+    /// Realities in each of them.
     pub realities: usize,
     /// Simulations that work.
     pub works: usize,
@@ -225,12 +241,35 @@ pub struct SimulationSummary {
     pub low: Option<f64>,
     /// Upper end.
     pub high: Option<f64>,
+    /// Mean share of the time in which targets were caged; a knee that cannot drive a robot cages nothing.
+    pub caged: f64,
+    /// The same of each knee in the world in which it is lowest for it, mean over knees.
+    pub worst_caged: f64,
+    /// Mean cost J; a knee that cannot drive a robot has the highest possible.
+    pub cost: f64,
+    /// The same of each knee in the world in which it is highest for it, mean over knees.
+    pub worst_cost: f64,
 }
 
 impl SimulationSummary {
     /// The rate and its interval as a person reads them.
     pub fn rate_words(&self) -> String {
-        rate_words(self.works, self.runs * self.realities, self.rate, self.low.zip(self.high))
+        rate_words(self.works, self.simulations(), self.rate, self.low.zip(self.high))
+    }
+
+    /// Simulations: runs times worlds times realities.
+    pub fn simulations(&self) -> usize {
+        self.runs * self.worlds * self.realities
+    }
+
+    /// What the worlds are called where they stand in one column.
+    pub fn worlds_words(&self) -> &str {
+        match (self.transfer.as_str(), self.world.as_str()) {
+            ("", "") if self.worlds == 1 => "its world",
+            ("", "") => "all its worlds",
+            (transfer, "") => transfer,
+            (_, world) => world,
+        }
     }
 }
 
@@ -245,6 +284,11 @@ fn rate_words(successes: usize, trials: usize, rate: f64, interval: Option<(f64,
 }
 
 impl TransferRow {
+    /// What the worlds are called where they stand in one column.
+    pub fn worlds_words(&self) -> &str {
+        if self.world.is_empty() { &self.transfer } else { &self.world }
+    }
+
     /// Trials: runs times worlds.
     pub fn trials(&self) -> usize {
         self.runs * self.worlds

@@ -2,7 +2,7 @@
 
 use super::job::{Job, Product};
 use super::part::{self, Part};
-use super::plan::{Plan, slug};
+use super::plan::{Place, Plan, slug};
 use super::simulate::Simulate;
 use super::unit::Unit;
 use crate::files::{self, FileError, read_blob};
@@ -16,7 +16,9 @@ use std::path::{Path, PathBuf};
 pub struct Knee<'p> {
     /// The run that it is of.
     pub unit: Unit,
-    scenario: &'p Scenario,
+    /// Where the world stands in the plan.
+    pub place: Place,
+    world: &'p Scenario,
     simulate: &'p Simulate,
     blob: Blob,
     /// The same as bytes.
@@ -25,22 +27,39 @@ pub struct Knee<'p> {
 }
 
 impl<'p> Knee<'p> {
-    /// The knees of all runs, if they are to be simulated.
+    /// The knees of all runs, if they are to be simulated, each in all worlds that it is simulated in.
     ///
     /// # Errors
     /// A damaged run, or a knee that no blob of the scale holds.
     pub fn all(plan: &'p Plan, campaign: &Path) -> Result<Vec<Knee<'p>>, FileError> {
         let Some(simulate) = &plan.simulate else { return Ok(Vec::new()) };
-        let knee = |unit: Unit| {
+        let mut knees = Vec::new();
+        for unit in Unit::all(plan) {
             let path = campaign.join(unit.folder(plan)).join("knee.grn");
             let blob = Blob { scale: simulate.scale, ..read_blob(&path)? };
             let bytes = files::blob_bytes(&blob).map_err(|error| FileError::new(&path, error))?;
-            let scenario = &plan.scenarios[unit.scenario].scenario;
-            let method = slug(&plan.methods[unit.method].name);
-            let folder = Path::new(Self::FOLDER).join(slug(scenario.name())).join(method);
-            Ok(Knee { unit, scenario, simulate, blob, bytes, folder })
-        };
-        Unit::all(plan).into_iter().map(knee).collect()
+            knees.extend(plan.simulated_in(unit.scenario).into_iter().map(|place| Knee {
+                unit,
+                place,
+                world: plan.world(place),
+                simulate,
+                blob: blob.clone(),
+                bytes: bytes.clone(),
+                folder: Self::folder(plan, unit, place),
+            }));
+        }
+        Ok(knees)
+    }
+
+    /// The folder, within the campaign's, of what is simulated with the knees of a run's scenario and method in a world. The only
+    /// training world needs none of its own.
+    pub fn folder(plan: &Plan, unit: Unit, place: Place) -> PathBuf {
+        let planned = &plan.scenarios[unit.scenario];
+        let folder = Path::new(Self::FOLDER).join(slug(&planned.name)).join(slug(&plan.methods[unit.method].name));
+        match place {
+            Place::Scenario(..) if planned.worlds.len() == 1 => folder,
+            _ => folder.join(slug(plan.world(place).name())),
+        }
     }
 }
 
@@ -57,7 +76,7 @@ impl Part for Knee<'_> {
         let Simulate { lab, realities, seed, scale, speed_m_per_s, number } = self.simulate;
         let identity: String = self.blob.identity().iter().map(|byte| format!("{byte:02x}")).collect();
         let run = format!("{} {identity} {realities} {seed} {scale} {speed_m_per_s} {number}\n", files::VERSION);
-        [run, self.scenario.to_toml(), lab::write(lab)].concat()
+        [run, self.world.to_toml(), lab::write(lab)].concat()
     }
 
     fn worth(&self) -> u64 {
@@ -65,7 +84,7 @@ impl Part for Knee<'_> {
     }
 
     fn job(&self) -> Job {
-        Job::Simulations { scenario: self.unit.scenario, knee: self.bytes.clone() }
+        Job::Simulations { world: self.place, knee: self.bytes.clone() }
     }
 
     fn csv(&self, product: Product) -> Option<Vec<u8>> {

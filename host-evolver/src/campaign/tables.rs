@@ -1,15 +1,14 @@
 //! What a campaign says in numbers, made from the files of its units.
 
-use super::plan::Plan;
-use super::rows::{Comparison, INFEASIBLE, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
-use super::simulate::Simulate;
+use super::plan::{Place, Plan};
+use super::rows::{Comparison, Measure, RunRow, SimulationRow, SimulationSummary, Summary, TransferRow};
+use super::tables_of_worlds::{costs, simulation_rows, transfer_rows};
 use super::trial::Trial;
 use super::unit::Unit;
 use crate::evolve::{FrontMember, deployed, front_hypervolume};
 use crate::files::{self, Contents, FileError};
-use crate::realities::{Reality, Robustness};
-use grn_optimisers::statistics::{a12, bootstrap_rate, holm, mann_whitney, quartiles, wilson};
-use std::collections::BTreeMap;
+use crate::realities::Reality;
+use grn_optimisers::statistics::{a12, holm, mann_whitney, quartiles};
 use std::path::Path;
 
 const SIMULATIONS: &str = "simulations.csv";
@@ -33,26 +32,23 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// The tables from the units in the folder, from trials with their group's name and the world's number, and from realities.
+    /// The tables from the units in the folder, from the trials in each world, with the names of its group and itself, and from the
+    /// realities of each knee in each world.
     pub(super) fn of(
         plan: &Plan,
         campaign: &Path,
-        trials: Vec<(&str, usize, Vec<Trial>)>,
-        simulations: &[(Unit, Vec<Reality>)],
+        trials: &[((&str, &str), Vec<Trial>)],
+        simulations: &[((Unit, Place), Vec<Reality>)],
     ) -> Result<Tables, FileError> {
-        let cost = |unit: Unit| {
-            let realities =
-                simulations.iter().find(|(simulated, _)| *simulated == unit).map(|(_, realities)| realities);
-            realities.and_then(|realities| mean(realities, |reality| reality.cost))
-        };
-        let run = |unit: Unit| run_row(unit, plan, campaign, cost(unit));
-        let runs = Unit::all(plan).into_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        let runs = Unit::all(plan).into_iter();
+        let runs = runs.map(|unit| run_row(unit, plan, campaign, costs(unit, simulations)));
+        let runs = runs.collect::<Result<Vec<_>, _>>()?;
         let is_measured = |measure: &Measure| *measure != Measure::Cost || plan.simulate.is_some();
-        let mut tables = Tables { transfers: transfer_rows(&trials), ..Tables::default() };
+        let mut tables = Tables { transfers: transfer_rows(plan, trials), ..Tables::default() };
         if let Some(simulate) = &plan.simulate {
             (tables.simulations, tables.simulated) = simulation_rows(plan, simulate, simulations);
         }
-        for scenario in plan.scenarios.iter().map(|planned| planned.scenario.name()) {
+        for scenario in plan.scenarios.iter().map(|planned| planned.name.as_str()) {
             let rows_of = |method: &str| -> Vec<&RunRow> {
                 runs.iter().filter(|run| run.scenario == scenario && run.method == method).collect()
             };
@@ -106,12 +102,7 @@ impl Tables {
     }
 }
 
-/// The mean of a measure; `None` without realities, of a knee that cannot drive a robot.
-fn mean(realities: &[Reality], measure: impl Fn(&Reality) -> f64) -> Option<f64> {
-    (!realities.is_empty()).then(|| realities.iter().map(measure).sum::<f64>() / realities.len() as f64)
-}
-
-fn run_row(unit: Unit, plan: &Plan, campaign: &Path, cost: Option<f64>) -> Result<RunRow, FileError> {
+fn run_row(unit: Unit, plan: &Plan, campaign: &Path, costs: Option<(f64, f64)>) -> Result<RunRow, FileError> {
     let front = unit.front(plan, campaign)?;
     let empty = || FileError::new(campaign.join(unit.folder(plan)), "the front is empty; delete this run");
     let better = |a: &&FrontMember, b: &&FrontMember| a.violation.total_cmp(&b.violation).then(a.f2.total_cmp(&b.f2));
@@ -120,7 +111,7 @@ fn run_row(unit: Unit, plan: &Plan, campaign: &Path, cost: Option<f64>) -> Resul
     let feasible = front.iter().filter(|member| member.is_feasible());
     let planned = &plan.scenarios[unit.scenario];
     Ok(RunRow {
-        scenario: planned.scenario.name().into(),
+        scenario: planned.name.clone(),
         method: plan.methods[unit.method].name.clone(),
         seed: unit.seed,
         evaluations: planned.evaluations,
@@ -132,7 +123,8 @@ fn run_row(unit: Unit, plan: &Plan, campaign: &Path, cost: Option<f64>) -> Resul
         knee_nodes: knee.nodes,
         knee_violation: knee.violation,
         hypervolume: front_hypervolume(feasible.map(|member| [member.nodes as f64, member.f2])),
-        cost,
+        cost: costs.map(|(mean, _)| mean),
+        worst_cost: costs.map(|(_, worst)| worst),
     })
 }
 
@@ -170,115 +162,6 @@ fn comparison(measure: Measure, rows: &[&RunRow], against: &[&RunRow]) -> Option
     })
 }
 
-/// The 95 % interval of a success rate over runs and worlds; a single trial has none.
-fn interval(succeeded: &[Vec<bool>]) -> Option<(f64, f64)> {
-    let worlds = succeeded.iter().map(Vec::len).max().unwrap_or(0);
-    let successes = succeeded.iter().flatten().filter(|&&success| success).count();
-    let count: usize = succeeded.iter().map(Vec::len).sum();
-    let independent = succeeded.len().max(worlds);
-    match successes {
-        _ if count <= 1 => None,
-        _ if succeeded.len() == 1 => Some(wilson(successes, count)),
-        0 => Some(wilson(0, independent)),
-        _ if successes == count => Some(wilson(independent, independent)),
-        _ => Some(bootstrap_rate(succeeded)),
-    }
-}
-
-fn transfer_rows(trials: &[(&str, usize, Vec<Trial>)]) -> Vec<TransferRow> {
-    // In the order of the plan: groups as they come, in each the sources as they come.
-    let mut sources: Vec<(&str, &str, &str)> = Vec::new();
-    let mut outcomes: BTreeMap<(usize, u64), Vec<&Trial>> = BTreeMap::new();
-    for (group, _, trials) in trials {
-        for trial in trials {
-            let source = (*group, trial.scenario.as_str(), trial.method.as_str());
-            let place = sources.iter().position(|known| *known == source).unwrap_or_else(|| {
-                sources.push(source);
-                sources.len() - 1
-            });
-            outcomes.entry((place, trial.seed)).or_default().push(trial);
-        }
-    }
-    let row = |(place, &(transfer, from, method)): (usize, &(&str, &str, &str))| {
-        let runs: Vec<&Vec<&Trial>> =
-            outcomes.range((place, 0)..=(place, u64::MAX)).map(|(_, trials)| trials).collect();
-        let succeeded: Vec<Vec<bool>> =
-            runs.iter().map(|trials| trials.iter().map(|trial| trial.violation == 0.0).collect()).collect();
-        let count: usize = succeeded.iter().map(Vec::len).sum();
-        let successes = succeeded.iter().flatten().filter(|&&success| success).count();
-        let interval = interval(&succeeded);
-        let f2 = |trial: &&&Trial| if trial.violation == 0.0 { trial.f2 } else { INFEASIBLE + trial.violation };
-        let all: Vec<f64> = runs.iter().flat_map(|trials| trials.iter()).map(|trial| f2(&trial)).collect();
-        TransferRow {
-            transfer: transfer.into(),
-            from: from.into(),
-            method: method.into(),
-            runs: runs.len(),
-            worlds: runs.first().map_or(0, |trials| trials.len()),
-            successes,
-            rate: successes as f64 / count.max(1) as f64,
-            low: interval.map(|ends| ends.0),
-            high: interval.map(|ends| ends.1),
-            median_f2: quartiles(&all).map_or(f64::NAN, |quartiles| quartiles.median),
-        }
-    };
-    sources.iter().enumerate().map(row).collect()
-}
-
-fn simulation_rows(
-    plan: &Plan,
-    simulate: &Simulate,
-    simulations: &[(Unit, Vec<Reality>)],
-) -> (Vec<SimulationRow>, Vec<SimulationSummary>) {
-    let count = simulate.realities as usize;
-    let median = |realities: &[Reality], measure: &dyn Fn(&Reality) -> f64| {
-        Robustness { realities: realities.to_vec() }.quantile(0.5, measure)
-    };
-    let row = |(unit, realities): &(Unit, Vec<Reality>)| {
-        // A knee that cannot drive a robot works nowhere.
-        let works = realities.iter().filter(|reality| reality.works).count();
-        let (low, high) = wilson(works, count);
-        let error = |reality: &Reality| reality.radial_error_share.unwrap_or(f64::INFINITY);
-        SimulationRow {
-            scenario: plan.scenarios[unit.scenario].scenario.name().into(),
-            method: plan.methods[unit.method].name.clone(),
-            seed: unit.seed,
-            laboratory: simulate.lab.name.clone(),
-            realities: count,
-            works,
-            rate: works as f64 / count as f64,
-            low,
-            high,
-            caged: mean(realities, |reality| reality.caged_share).unwrap_or(0.0),
-            cost: mean(realities, |reality| reality.cost),
-            radial_error: median(realities, &error).filter(|error| error.is_finite()),
-        }
-    };
-    // Runs come by scenario and method.
-    let groups = simulations.chunk_by(|(a, _), (b, _)| (a.scenario, a.method) == (b.scenario, b.method));
-    let summary = |group: &[(Unit, Vec<Reality>)]| {
-        let works = |realities: &[Reality]| match realities {
-            [] => vec![false; count],
-            realities => realities.iter().map(|reality| reality.works).collect(),
-        };
-        let succeeded: Vec<Vec<bool>> = group.iter().map(|(_, realities)| works(realities)).collect();
-        let works = succeeded.iter().flatten().filter(|&&works| works).count();
-        let (first, interval) = (group.first()?.0, interval(&succeeded));
-        Some(SimulationSummary {
-            scenario: plan.scenarios[first.scenario].scenario.name().into(),
-            method: plan.methods[first.method].name.clone(),
-            laboratory: simulate.lab.name.clone(),
-            runs: group.len(),
-            realities: count,
-            works,
-            rate: works as f64 / (group.len() * count) as f64,
-            low: interval.map(|ends| ends.0),
-            high: interval.map(|ends| ends.1),
-        })
-    };
-    (simulations.iter().map(row).collect(), groups.filter_map(summary).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -287,6 +170,7 @@ mod tests {
     fn one_trial_is_one_of_one_and_one_run_is_its_value() {
         let row = |runs, low, high| TransferRow {
             transfer: "t".into(),
+            world: String::new(),
             from: String::new(),
             method: "m".into(),
             runs,
@@ -314,18 +198,5 @@ mod tests {
             (summary(1).quartile_words(number), summary(3).quartile_words(number)),
             ("2".into(), "2 (1 to 3)".into())
         );
-    }
-
-    #[test]
-    fn intervals_tell_what_was_sampled() {
-        assert_eq!(interval(&[vec![true]]), None, "one trial tells of no spread");
-        let (low, high) = interval(&[vec![true, false, true, true]]).unwrap();
-        assert!(low < 0.75 && 0.75 < high);
-        let (low, high) = interval(&vec![vec![false; 200]; 30]).unwrap();
-        assert!(low == 0.0 && (0.015..0.02).contains(&high), "30 runs of 200 worlds are not 6000 trials: {high}");
-        let (low, high) = interval(&vec![vec![true]; 30]).unwrap();
-        assert!((0.88..0.89).contains(&low) && high == 1.0, "{low}");
-        let (low, high) = interval(&[vec![true, false], vec![true, true], vec![false, false]]).unwrap();
-        assert!(low < 0.5 && 0.5 < high);
     }
 }

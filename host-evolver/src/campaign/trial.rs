@@ -43,24 +43,31 @@ struct Group<'p> {
     candidates: Vec<Candidate>,
 }
 
-/// All groups of a plan: each scenario, and each transfer with the knees of its runs; given models in every one.
+/// All groups of a plan: each scenario, and each transfer with the knees of its runs; given models in every one. The knees of a
+/// scenario with several worlds are tried in each of them as well: what they are worth on average is known, but not where they fail.
 fn groups<'p>(plan: &'p Plan, campaign: &Path) -> Result<Vec<Group<'p>>, FileError> {
-    let scenario = |(place, planned): (usize, &'p PlannedScenario)| -> Result<Group<'p>, FileError> {
-        let worlds = vec![(Place::Scenario(place), &planned.scenario)];
-        Ok(Group { name: planned.scenario.name(), worlds, candidates: given(plan)? })
-    };
-    let transfer = |(place, transfer): (usize, &'p PlannedTransfer)| -> Result<Group<'p>, FileError> {
+    let candidates = |is_tried: &dyn Fn(&str) -> bool| -> Result<Vec<Candidate>, FileError> {
         let mut candidates = given(plan)?;
         for unit in Unit::all(plan) {
-            let from = plan.scenarios[unit.scenario].scenario.name();
-            if transfer.from.iter().any(|name| name == from) {
+            let from = &plan.scenarios[unit.scenario].name;
+            if is_tried(from) {
                 let path = campaign.join(unit.folder(plan)).join("knee.grn");
                 let method = plan.methods[unit.method].name.clone();
-                candidates.push(Candidate::new(from.to_owned(), method, unit.seed, read_blob(&path)?, &path)?);
+                candidates.push(Candidate::new(from.clone(), method, unit.seed, read_blob(&path)?, &path)?);
             }
         }
-        let place = |world| Place::Transfer(place, world);
-        let worlds = transfer.worlds.iter().enumerate().map(|(number, world)| (place(number), world)).collect();
+        Ok(candidates)
+    };
+    let scenario = |(place, planned): (usize, &'p PlannedScenario)| -> Result<Group<'p>, FileError> {
+        let worlds = &planned.worlds;
+        let candidates = candidates(&|from| worlds.len() > 1 && from == planned.name)?;
+        let worlds = worlds.iter().enumerate().map(|(number, world)| (Place::Scenario(place, number), world));
+        Ok(Group { name: &planned.name, worlds: worlds.collect(), candidates })
+    };
+    let transfer = |(place, transfer): (usize, &'p PlannedTransfer)| -> Result<Group<'p>, FileError> {
+        let candidates = candidates(&|from| transfer.from.iter().any(|name| name == from))?;
+        let worlds = transfer.worlds.iter().enumerate();
+        let worlds = worlds.map(|(number, world)| (Place::Transfer(place, number), world)).collect();
         Ok(Group { name: &transfer.name, worlds, candidates })
     };
     let scenarios = plan.scenarios.iter().enumerate().map(scenario);
@@ -86,13 +93,18 @@ pub struct Trials<'p> {
     /// The group's name in the tables.
     pub name: &'p str,
     /// The number of the world in the group.
-    pub number: usize,
+    number: usize,
     place: Place,
     world: &'p Scenario,
     candidates: Arc<Vec<Candidate>>,
 }
 
 impl<'p> Trials<'p> {
+    /// The world's name.
+    pub fn world_name(&self) -> &'p str {
+        self.world.name()
+    }
+
     /// Those of all worlds of a plan in which any model is tried.
     ///
     /// # Errors

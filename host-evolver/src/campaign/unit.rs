@@ -1,7 +1,7 @@
 //! One run of one method in one scenario with one seed: the unit of work, whole in its folder or not there.
 
 use super::method::Method;
-use super::plan::{Plan, slug};
+use super::plan::{Plan, slug, text_of};
 use crate::evolve::{FrontMember, Milestone};
 use crate::files::{self, Contents, FileError, Ledger};
 use crate::results;
@@ -19,7 +19,11 @@ const MANIFEST: &str = "manifest.json";
 struct Manifest {
     grn: String,
     scenario: String,
+    /// Of the canonical texts of its worlds, one after the other.
     scenario_sha256: String,
+    /// Names of the training worlds, if they are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    worlds: Option<Vec<String>>,
     evaluations: usize,
     method: Method,
     seed: u64,
@@ -62,18 +66,20 @@ impl Unit {
 
     /// Its folder within the campaign's.
     pub fn folder(self, plan: &Plan) -> PathBuf {
-        let scenario = slug(plan.scenarios[self.scenario].scenario.name());
+        let scenario = slug(&plan.scenarios[self.scenario].name);
         let method = slug(&plan.methods[self.method].name);
         Path::new("runs").join(scenario).join(method).join(format!("{:03}", self.seed))
     }
 
     fn manifest(self, plan: &Plan) -> Manifest {
         let planned = &plan.scenarios[self.scenario];
+        let (worlds, several) = (&planned.worlds, planned.worlds.len() > 1);
         let method = plan.methods[self.method].method.clone();
         Manifest {
             grn: files::VERSION.into(),
-            scenario: planned.scenario.name().into(),
-            scenario_sha256: files::sha256(planned.scenario.to_toml()),
+            scenario: planned.name.clone(),
+            scenario_sha256: files::sha256(text_of(worlds)),
+            worlds: several.then(|| worlds.iter().map(|world| world.name().into()).collect()),
             evaluations: planned.evaluations,
             swarm: method.objectives().need_trials().then(|| plan.swarm()),
             method,

@@ -1,7 +1,9 @@
 //! `grn campaign`.
 
 use super::{Answer, Failure, conditions, interrupt, options, output, progress, robustness, this_command};
-use crate::campaign::{Campaign, Listener, Maker, Measure, Plan, Shard, Simulate, Stage, Tables, Team, follow};
+use crate::campaign::{
+    Campaign, Listener, Maker, Measure, Plan, Shard, Simulate, SimulationSummary, Stage, Tables, Team, follow,
+};
 use crate::cluster::{self, Follower, Leader, Role};
 use firmware_sim::lab;
 use grn_input::file_name;
@@ -72,9 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 fn planned(arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = Plan::load(&arguments.file)?;
     plan.simulate = arguments.simulate(plan.simulate.take())?;
-    if let Some(simulate) = &plan.simulate {
-        simulate.check(plan.scenarios.iter().map(|planned| &planned.scenario))?;
-    }
+    plan.check_simulations()?;
     Ok(plan)
 }
 
@@ -196,15 +196,24 @@ fn text(tables: &Tables) -> String {
     text += &columns(["scenario", "measure", "better than the baseline?", "p (Holm)", "A12"], rows);
     if !tables.transfers.is_empty() {
         let rows = tables.transfers.iter();
-        let rows = rows.map(|row| [row.transfer.clone(), row.method.clone(), row.from.clone(), row.rate_words()]);
+        let rows = rows.map(|row| [row.worlds_words().into(), row.method.clone(), row.from.clone(), row.rate_words()]);
         text.push('\n');
         text += &columns(["tried in", "model", "evolved for", "success (95 % interval)"], rows);
     }
     if let Some(first) = tables.simulated.first() {
-        let rows = tables.simulated.iter();
-        let rows = rows.map(|row| [row.scenario.clone(), row.method.clone(), row.runs.to_string(), row.rate_words()]);
+        let share = |share: f64| format!("{:.1} %", 100.0 * share);
+        let both = |mean: String, worst: String, row: &SimulationSummary| {
+            if row.worlds == 1 { mean } else { format!("{mean}, {worst}") }
+        };
+        let rows = tables.simulated.iter().map(|row| {
+            let caged = both(share(row.caged), share(row.worst_caged), row);
+            let cost = both(format!("{:.3}", row.cost), format!("{:.3}", row.worst_cost), row);
+            let (scenario, method) = (row.scenario.clone(), row.method.clone());
+            [scenario, row.worlds_words().into(), method, row.runs.to_string(), row.rate_words(), caged, cost]
+        });
         text += &format!("\nknees simulated in {} realities of {} each\n", first.realities, first.laboratory);
-        text += &columns(["scenario", "method", "knees", "works (95 % interval)"], rows);
+        let (works, caged, cost) = ("works (95 % interval)", "caged: mean, worst world", "J: mean, worst world");
+        text += &columns(["evolved for", "simulated in", "method", "knees", works, caged, cost], rows);
     }
     text
 }

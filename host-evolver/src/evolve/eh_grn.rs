@@ -2,7 +2,7 @@
 
 use super::front::front_hypervolume;
 use super::state::Milestone;
-use crate::evaluation::{Evaluation, Evaluator, Model, World};
+use crate::evaluation::{Constraints, Evaluation, Evaluator, Model, World};
 use crate::model::describe;
 use crate::model::published::{PUBLISHED, Published};
 use grn_core::network::{Network, THETA_RANGE};
@@ -74,14 +74,14 @@ pub struct Tuned {
     pub evaluation: Evaluation,
 }
 
-/// Searches θ with a budget of `evaluations`. CMA-ES starts at a random mean, and again at another whenever it has
+/// Searches θ with a budget of `evaluations` for the least mean of f2 in `worlds`, at least one, whose morphogens are the same. CMA-ES starts at a random mean, and again at another whenever it has
 /// nothing left to learn. Returns `None` if it was stopped.
 ///
 /// CMA-ES learns from the better half of a generation only (no negative weights, as in the version that the paper
 /// cites). So the worse half is evaluated only until it is sure to be worse.
 pub fn search(
     structure: Structure,
-    world: &World,
+    worlds: &[World],
     evaluations: usize,
     seed: u64,
     stop: &AtomicBool,
@@ -91,8 +91,8 @@ pub fn search(
     let bounds = Bounds::cube(dimension, low, high).ok()?;
     let settings = cmaes::Settings::new(POPULATION, SIGMA, evaluations.max(1)).ok()?.passive();
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut evaluator = Evaluator::new(world);
-    let level = world.scenario().morphogen().level;
+    let mut evaluator = Evaluator::among(worlds, Constraints::PAPER);
+    let level = worlds.first()?.scenario().morphogen().level;
     let mut best: Option<Tuned> = None;
     let mut history = Vec::new();
     let mut spent = 0;
@@ -155,15 +155,29 @@ mod tests {
 
     #[test]
     fn a_search_is_repeatable_and_its_result_is_what_the_model_is_worth() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/channel.toml");
-        let world = World::new(Scenario::load(path).unwrap());
-        let run = |seed| search(Structure::Task2, &world, 410, seed, &AtomicBool::new(false)).unwrap();
+        let worlds = [world("channel")];
+        let run = |seed| search(Structure::Task2, &worlds, 410, seed, &AtomicBool::new(false)).unwrap();
         let (tuned, history) = run(1);
         assert_eq!((&tuned, &history), (&run(1).0, &run(1).1));
         assert_ne!(tuned.thetas, run(2).0.thetas);
         assert_eq!(history.last().unwrap().evaluations, 410);
         let model = Model::new(&Structure::Task2.network(&tuned.thetas).unwrap(), 0.5).unwrap();
-        assert_eq!(Evaluator::new(&world).evaluate(&model), tuned.evaluation);
-        assert!(search(Structure::Task2, &world, 410, 1, &AtomicBool::new(true)).is_none());
+        assert_eq!(Evaluator::new(&worlds[0]).evaluate(&model), tuned.evaluation);
+        assert!(search(Structure::Task2, &worlds, 410, 1, &AtomicBool::new(true)).is_none());
+    }
+
+    #[test]
+    fn in_several_worlds_the_mean_counts() {
+        let worlds = [world("open"), world("channel")];
+        let (tuned, _) = search(Structure::Task2, &worlds, 400, 1, &AtomicBool::new(false)).unwrap();
+        let model = Model::new(&Structure::Task2.network(&tuned.thetas).unwrap(), 0.5).unwrap();
+        let alone = worlds.each_ref().map(|world| Evaluator::new(world).evaluate(&model).f2);
+        assert!(alone[0] != alone[1], "{alone:?}");
+        assert!((tuned.evaluation.f2 - (alone[0] + alone[1]) / 2.0).abs() < 1e-12, "{alone:?} {tuned:?}");
+    }
+
+    fn world(name: &str) -> World {
+        let path = format!("{}/../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        World::new(Scenario::load(path).unwrap())
     }
 }

@@ -3,8 +3,9 @@
 use super::options::{self, within};
 use super::{Answer, Failure, interrupt, output, progress, take_folder};
 use crate::files::{self, FolderLock};
-use crate::missions::sampling::{CLEARANCE, ROBOTS, TARGETS};
-use crate::missions::{Class, Difficulty, Mission, MissionRow, Sampling, TABLE};
+use crate::missions::{Difficulty, MissionRow, TABLE};
+use firmware_sim::missions::sampling::{CLEARANCE, ROBOTS, TARGETS};
+use firmware_sim::missions::{Class, Mission, Sampling};
 use firmware_sim::scenario::InputError;
 use grn_input::Range;
 use indicatif::ProgressBar;

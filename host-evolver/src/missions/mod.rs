@@ -1,29 +1,12 @@
-//! Missions: worlds drawn at random, each of a class, that a swarm can pass by construction.
+//! What there is to gain in a mission, and its line in the table of a folder of missions.
 //!
-//! How a mission is drawn:
-//!
-//! 1. Its number of targets, of robots, the clearance of the way and whether walls block radio, as `sampling` allows.
-//! 2. `obstacles` lays out what its class puts beside the way, in a plane of its own, `layout` turns and mirrors it into a region.
-//! 3. Several targets go one behind the other; each goes a part of the same way, and all pass all obstacles.
-//! 4. `robots` places the robots behind the targets.
-//! 5. `difficulty` measures what an adaptive pattern can gain there, and `table` has a line on it.
-//!
-//! `circle` is the controller that keeps to the best circle, which does not adapt.
+//! `difficulty` measures how much a mission rewards adaptation, `table` has a line on it, `circle` is the controller that keeps to the best
+//! circle, which does not adapt.
 
 mod circle;
-mod class;
 mod difficulty;
-mod draw;
-mod layout;
-mod mission;
-mod obstacles;
-mod robots;
-pub mod sampling;
 mod table;
 
 pub use circle::Circle;
-pub use class::{Class, UnknownClass};
 pub use difficulty::Difficulty;
-pub use mission::Mission;
-pub use sampling::Sampling;
 pub use table::{MissionRow, TABLE};

@@ -1,8 +1,8 @@
 //! The table of a folder of missions.
 
 use super::difficulty::Difficulty;
-use super::mission::Mission;
 use crate::files::{FileError, read_csv};
+use firmware_sim::missions::Mission;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -2,7 +2,8 @@
 
 use super::Third;
 use super::row::Row;
-use crate::missions::{Class, MissionRow};
+use crate::missions::MissionRow;
+use firmware_sim::missions::Class;
 use grn_optimisers::statistics::wilson;
 use serde::Serialize;
 

@@ -3,8 +3,8 @@
 use super::class::Class;
 use super::draw::{centimetres, chance, rounded, rounded_up, side, whole};
 use super::layout::{Course, Layout, Obstacle, Shape, block};
+use crate::random::Stream;
 use core::f64::consts::FRAC_PI_8;
-use firmware_sim::random::Stream;
 use grn_core::geometry::{Point, Vector};
 
 /// How far the region reaches to both sides of a straight way, metres.
@@ -96,7 +96,7 @@ fn disc_offset(clearance: f64, radius: f64) -> f64 {
     ((clearance + radius * DISC_EXCESS) * 100.0).ceil() / 100.0
 }
 
-/// As [`Polygon::disc`](firmware_sim::geometry::Polygon::disc) says.
+/// As [`Polygon::disc`](crate::geometry::Polygon::disc) says.
 const DISC_EXCESS: f64 = 1.000_61;
 
 /// A block around whose edge the way goes to the north.

@@ -2,8 +2,8 @@
 
 use super::class::Class;
 use super::draw::{chance, whole};
-use firmware_sim::random::Stream;
-use firmware_sim::scenario::limits::MOST_TARGETS;
+use crate::random::Stream;
+use crate::scenario::limits::MOST_TARGETS;
 use grn_input::{InputError, Range};
 
 /// Targets of a mission.
@@ -127,7 +127,7 @@ fn check_order<T: PartialOrd + std::fmt::Debug>(key: &str, least: T, most: T) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware_sim::random::Component;
+    use crate::random::Component;
 
     fn refused(targets: [usize; 2], robots: [usize; 2], clearance: [f64; 2]) -> String {
         Sampling::new(&[], targets, robots, clearance).unwrap_err().to_string()

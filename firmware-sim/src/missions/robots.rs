@@ -1,9 +1,9 @@
 //! Where a mission's robots begin: behind the targets, each around its own.
 
 use super::draw::rounded;
+use crate::geometry::{Walls, length_squared};
+use crate::random::Stream;
 use core::f64::consts::TAU;
-use firmware_sim::geometry::{Walls, length_squared};
-use firmware_sim::random::Stream;
 use grn_core::geometry::{Point, Vector};
 
 /// From where to where around a target's start, metres.

@@ -6,9 +6,9 @@ use super::layout::{Course, Frame, Layout, Obstacle, Shape};
 use super::obstacles::{Plan, drawn};
 use super::robots::starts;
 use super::sampling::Sampling;
+use crate::random::{Component, Stream};
+use crate::scenario::{InputError, Path, Scenario};
 use core::fmt::Write;
-use firmware_sim::random::{Component, Stream};
-use firmware_sim::scenario::{InputError, Path, Scenario};
 use grn_core::geometry::{Point, Vector};
 
 /// From one target to the next, metres along the way.
@@ -146,8 +146,8 @@ fn world_text(name: &str, layout: &Layout, frame: &Frame, paths: &[Vec<Point<f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use firmware_sim::config::SwarmConfig;
-    use firmware_sim::swarm;
+    use crate::config::SwarmConfig;
+    use crate::swarm;
 
     fn drawn(seed: u64, count: usize) -> impl Iterator<Item = Mission> {
         (0..count).map(move |number| Mission::drawn(seed, number, &Sampling::default()).unwrap())
@@ -155,7 +155,7 @@ mod tests {
 
     /// Where the targets are on their way, every few centimetres.
     fn ways(world: &Scenario) -> Vec<Point<f64>> {
-        let steps = |target: &firmware_sim::scenario::Target| (target.path().length() / 0.05).ceil() as usize;
+        let steps = |target: &crate::scenario::Target| (target.path().length() / 0.05).ceil() as usize;
         let of_target = |target| {
             let last = steps(target);
             (0..=last).map(move |step| target.path().at(step as f64 / last as f64))

@@ -1,6 +1,6 @@
 //! Random numbers that a person can read: whole centimetres.
 
-use firmware_sim::random::Stream;
+use crate::random::Stream;
 
 /// Uniform in [least, most), metres, rounded to a centimetre.
 pub(super) fn centimetres(stream: &mut Stream, [least, most]: [f64; 2]) -> f64 {

@@ -63,12 +63,13 @@ impl FarSense {
     ) -> Seen {
         let mut look = Seen::default();
         let (position, limit) = (eye.position, eye.range * eye.range);
-        for (number, target) in (0u8..).zip(targets).filter_map(|(number, &target)| Some((number, target?))) {
-            if length_squared(target - position) <= limit {
-                let seen = Sighting { target: number, position: eye.seen(target, stream) };
-                // A scenario has no more targets than a percept has room for.
-                let _ = look.targets.push(seen);
-            }
+        let there = (0u8..).zip(targets).filter_map(|(number, &target)| Some((number, target?)));
+        let squared = |target: Point<f64>| length_squared(target - position);
+        let limit_of_targets = nearest_targets(there.clone().map(|(_, target)| squared(target)), limit);
+        for (number, target) in there.filter(|&(_, target)| squared(target) <= limit_of_targets) {
+            let seen = Sighting { target: number, position: eye.seen(target, stream) };
+            // Of two that are equally far the one with the lower number is seen.
+            let _ = look.targets.push(seen);
         }
         if self.next >= self.queue.len() {
             self.next = 0;
@@ -88,6 +89,22 @@ impl FarSense {
         }
         look
     }
+}
+
+/// The squared distance up to which targets at these squared distances are told: `limit`, or less if more of them are within it than a
+/// percept has room for; then the nearest ones.
+fn nearest_targets(squared: impl Iterator<Item = f64>, limit: f64) -> f64 {
+    let mut nearest: Vec<f64, { MAX_TARGETS + 1 }> = Vec::new();
+    for squared in squared.filter(|&squared| squared <= limit) {
+        let place = nearest.iter().position(|&other| squared < other).unwrap_or(nearest.len());
+        if nearest.is_full() && place < nearest.len() {
+            nearest.pop();
+        }
+        if !nearest.is_full() {
+            let _ = nearest.insert(place, squared);
+        }
+    }
+    if nearest.is_full() { nearest[MAX_TARGETS - 1] } else { limit }
 }
 
 #[cfg(test)]
@@ -112,6 +129,19 @@ mod tests {
         let turned = 2.0 / (1.0f64 + 0.0025).sqrt();
         let expected = [1.1 + turned, 1.8 + turned * 0.05].map(|metres| (metres * 1e3).round() as i16);
         assert_eq!([look.targets[0].position.x, look.targets[0].position.y], expected);
+    }
+
+    #[test]
+    fn of_many_targets_the_nearest_are_told() {
+        let place = |x: f64| Some(Vector::new(x, 2.0));
+        let targets = [3.5, 1.5, 9.0, 0.2, 2.0, 1.2, 5.9].map(place);
+        let look = FarSense::new(0).look(&EYE, &targets, &[], &mut stream());
+        assert_eq!(look.targets.iter().map(|seen| seen.target).collect::<Vec<_>>(), [1, 3, 4, 5]);
+        let twins = [3.0, 2.0, 2.0, 2.0, 2.0, 2.0].map(place);
+        let look = FarSense::new(0).look(&EYE, &twins, &[], &mut stream());
+        assert_eq!(look.targets.iter().map(|seen| seen.target).collect::<Vec<_>>(), [1, 2, 3, 4]);
+        let few = [3.0, 2.0, 4.0].map(place);
+        assert_eq!(FarSense::new(0).look(&EYE, &few, &[], &mut stream()).targets.len(), 3);
     }
 
     #[test]

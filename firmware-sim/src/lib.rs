@@ -8,6 +8,7 @@
 //! | [`geometry`] | polygons, walls, rays, hulls |
 //! | [`scenario`] | the TOML world: target paths, walls, morphogens, ring |
 //! | [`random`] | one portable random stream per component |
+//! | [`missions`] | worlds drawn at random, each for a swarm of its own |
 //! | [`lab`] | the laboratory: the conditions of a run, as a file, and laboratories around it |
 //! | [`timing`] | when robots think |
 //! | [`body`] | wheels and differential drive |
@@ -45,6 +46,7 @@ pub mod lab;
 pub mod link;
 pub mod localisation;
 pub mod metrics;
+pub mod missions;
 pub mod proximity;
 pub mod radio;
 pub mod random;

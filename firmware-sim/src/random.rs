@@ -36,6 +36,8 @@ pub enum Component {
     Corruption = 13,
     /// What goes wrong with robots.
     Faults = 14,
+    /// What missions are drawn.
+    Missions = 15,
 }
 
 /// A stream of random numbers (PCG XSH-RR 64/32).

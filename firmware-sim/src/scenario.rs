@@ -7,6 +7,7 @@ mod disc;
 mod evasion;
 mod file;
 pub mod limits;
+mod meant;
 mod moving;
 mod obstacles;
 mod path;
@@ -24,6 +25,7 @@ pub use disc::Disc;
 pub use evasion::Evasion;
 pub use grn_input::InputError;
 pub use limits::MAX_SNAPSHOTS;
+pub use meant::MeantSwarm;
 pub use moving::{Motion, MovingWall};
 pub use path::Path;
 pub use presence::Presence;
@@ -80,6 +82,7 @@ pub struct Scenario {
     duration_s: Option<f64>,
     morphogen: Morphogen,
     ring: Ring,
+    meant_swarm: Option<MeantSwarm>,
     start: Option<Start>,
     targets: Vec<Target>,
     /// Polygons, then the outlines of the discs.
@@ -106,7 +109,7 @@ impl Scenario {
     ///
     /// # Errors
     /// [`InputError`] for text that is not TOML, unknown or missing keys, numbers out of the ranges in [`limits`], alone or
-    /// together, no target or more than [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS), two targets on the same
+    /// together, no target or more than [`MOST_TARGETS`](limits::MOST_TARGETS), two targets on the same
     /// path, a time without a target, paths that leave the region or enter a wall, walls that run into a target, and polygons
     /// that are none.
     pub fn parse(text: &str) -> Result<Scenario, InputError> {
@@ -148,7 +151,7 @@ impl Scenario {
         self.start.as_ref()
     }
 
-    /// The targets, 1 to 4 of them.
+    /// The targets, 1 to 10 of them.
     pub fn targets(&self) -> &[Target] {
         &self.targets
     }
@@ -283,6 +286,7 @@ impl Scenario {
                 d_obstacle: d_obstacle * factor,
                 steepness: steepness / factor,
             },
+            meant_swarm: self.meant_swarm,
             start: self.start.as_ref().map(|start| start.scaled(factor)),
             targets: self.targets.iter().map(|target| target.scaled(factor)).collect(),
             fixed_walls: Walls::new(fixed.chain(fixed_discs.iter().map(Disc::outline)).collect()),

@@ -58,7 +58,8 @@ pub struct Reality {
 }
 
 impl Reality {
-    fn of(number: u64, simulation: &Simulation) -> Reality {
+    /// What came out of the run in reality `number`.
+    pub(crate) fn of(number: u64, simulation: &Simulation) -> Reality {
         let (metrics, caging) = (&simulation.metrics, &simulation.caging);
         let last = metrics.recoveries.last();
         Reality {

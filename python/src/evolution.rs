@@ -160,6 +160,7 @@ impl Order {
         let Order { scenarios, settings, scale, lab, out, resume } = self;
         let config = usual_config(*scale, lab.clone());
         for scenario in scenarios {
+            let config = scenario.configured(config.clone());
             swarm::check(scenario, &config)?;
             check_length(scenario, &config)?;
         }
@@ -193,8 +194,8 @@ impl Order {
         for (place, scenario) in tried.iter().map(World::scenario).enumerate() {
             let watch =
                 |_| if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-            let mut recorder = record::recorder(scenario, task.swarm());
-            let (config, number) = (task.swarm().clone(), NumberType::F32);
+            let (config, number) = (scenario.configured(task.swarm().clone()), NumberType::F32);
+            let mut recorder = record::recorder(scenario, &config);
             let simulation = simulation::simulate(&knee, scenario, config, number, &mut recorder, watch)?;
             let simulation = simulation.ok_or(Ended::Stopped)?;
             works &= simulation.verdict().works();

@@ -43,7 +43,8 @@ impl Order<'_> {
     fn get(self) -> PyResult<(Blob, Scenario, SwarmConfig, NumberType)> {
         let (blob, scenario) = (scaled(self.blob.get()?, self.scale)?, self.scenario.get()?);
         let usual = usual_config(blob.scale, found(&self.lab, &self.set)?);
-        let mut config = SwarmConfig { seed: self.seed, target_speed_m_per_s: self.speed, ..usual };
+        let config = SwarmConfig { seed: self.seed, target_speed_m_per_s: self.speed, ..usual };
+        let mut config = scenario.configured(config);
         if let Some(count) = self.robots {
             config = config.with_robots(count);
         }

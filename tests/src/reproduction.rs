@@ -1,5 +1,6 @@
 //! The report that `cargo xtask reproduce` writes: each claim of the paper, our verdict, and the figures behind it.
 
+pub mod adaptive;
 mod claims;
 mod sensitivity;
 

@@ -37,6 +37,9 @@ const HELP: &str = "cargo xtask TASK
   reproduce
          run the paper's experiments (campaigns/*.toml, about ten minutes on two cores; goes on where it was stopped)
          and write docs/reproduction.md with its figures and tables
+  reproduce adaptive
+         the same for controllers that adapt, with docs/adaptive.md: takes a night on two cores; `grn campaign --shard`, MPI
+         and Slurm share out the campaigns' runs between machines
   fuzz   feed the blob decoder 10 million mutated inputs, a robot 10 million random frames, and the radio's assembler
          200 thousand random conversations, then the decoder 10 million
          inputs of libFuzzer's (this part needs a nightly toolchain and cargo-fuzz, and says so if they are missing)
@@ -73,7 +76,16 @@ fn main() -> ExitCode {
         "bless" => ["models", "digest"].iter().all(|what| {
             cargo(&["run", "--quiet", "--release", "--package", "grn-tests", "--bin", "bless", "--", what], &[])
         }),
-        "reproduce" => reproduce(),
+        "reproduce" => match env::args().nth(2).as_deref() {
+            None => reproduce(&["paper", "sensitivity", "de-generations"], "reproduce"),
+            Some("adaptive") => reproduce(&["generalise", "adaptive", "adaptive-tracked"], "adaptive"),
+            Some(other) => {
+                eprintln!(
+                    "cargo xtask reproduce {other}: there is nothing of that name; leave it out, or say adaptive"
+                );
+                false
+            }
+        },
         "fuzz" => fuzz(),
         "" | "help" | "--help" | "-h" => {
             print!("{HELP}");
@@ -169,14 +181,14 @@ fn c_install() -> bool {
     }
 }
 
-fn reproduce() -> bool {
-    const CAMPAIGNS: [&str; 3] = ["paper", "sensitivity", "de-generations"];
-    let done = CAMPAIGNS.iter().all(|name| {
+/// Runs campaigns, or what is left of them, and then `writer`, which makes a page of docs/ from their folders.
+fn reproduce(campaigns: &[&str], writer: &str) -> bool {
+    let done = campaigns.iter().all(|name| {
         let (file, out) = (format!("campaigns/{name}.toml"), format!("runs/{name}"));
         cargo(&["run", "--release", "--package", "host-evolver", "--", "campaign", &file, "--out", &out], &[])
     });
-    let folders = CAMPAIGNS.map(|name| format!("runs/{name}"));
-    let mut write = vec!["run", "--release", "--package", "grn-tests", "--bin", "reproduce", "--"];
+    let folders: Vec<String> = campaigns.iter().map(|name| format!("runs/{name}")).collect();
+    let mut write = vec!["run", "--release", "--package", "grn-tests", "--bin", writer, "--"];
     write.extend(folders.iter().map(String::as_str));
     done && cargo(&write, &[])
 }

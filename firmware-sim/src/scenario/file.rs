@@ -2,10 +2,10 @@
 
 use super::limits::{self, DURATION};
 use super::obstacles::Obstacles;
-use super::tables::{DiscTable, EvasionTable, StartTable, TargetTable, WallTable};
+use super::tables::{DiscTable, EvasionTable, StartTable, SwarmTable, TargetTable, WallTable};
 use super::targets::checked_targets;
 use super::timing::check_course;
-use super::{Morphogen, Ring, Scenario, Start};
+use super::{MeantSwarm, Morphogen, Ring, Scenario, Start};
 use core::fmt::Write;
 use grn_core::field::Kernel;
 use grn_input::{InputError, Pair, check_name};
@@ -21,6 +21,8 @@ pub(super) struct ScenarioFile {
     duration_s: Option<f64>,
     morphogen: MorphogenTable,
     ring: RingTable,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    swarm: Option<SwarmTable>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     start: Option<StartTable>,
     #[serde(default, rename = "target")]
@@ -53,7 +55,8 @@ impl TryFrom<ScenarioFile> for Scenario {
     type Error = InputError;
 
     fn try_from(file: ScenarioFile) -> Result<Scenario, InputError> {
-        let ScenarioFile { name, region, snapshots, duration_s, morphogen, ring, start, targets, walls, discs } = file;
+        let ScenarioFile { name, region, snapshots, duration_s, morphogen, ring, swarm, start, targets, walls, discs } =
+            file;
         let Pair(region) = region;
         check_name("name", &name)?;
         if let Some(duration_s) = duration_s {
@@ -66,6 +69,7 @@ impl TryFrom<ScenarioFile> for Scenario {
         let RingTable { d_min, d_max, d_obstacle, steepness } = ring;
         let ring = Ring { d_min, d_max, d_obstacle, steepness };
         limits::check_ring(&ring, region)?;
+        let meant_swarm = swarm.as_ref().map(MeantSwarm::checked).transpose()?;
         let obstacles = Obstacles::checked(walls, discs, region, snapshots)?;
         let targets = checked_targets(targets, region, &obstacles)?;
         let Obstacles { fixed: fixed_walls, fixed_discs, moving: moving_walls, .. } = obstacles;
@@ -76,6 +80,7 @@ impl TryFrom<ScenarioFile> for Scenario {
             duration_s,
             morphogen,
             ring,
+            meant_swarm,
             start: None,
             targets,
             fixed_walls,
@@ -110,6 +115,7 @@ impl From<Scenario> for ScenarioFile {
             duration_s: scenario.duration_s,
             morphogen: MorphogenTable { kernel, target_width, obstacle_width, level },
             ring: RingTable { d_min, d_max, d_obstacle, steepness },
+            swarm: scenario.meant_swarm.as_ref().map(SwarmTable::of),
             start: scenario.start.as_ref().map(StartTable::of),
             targets: scenario.targets.iter().map(TargetTable::of).collect(),
             walls,
@@ -144,6 +150,11 @@ impl ScenarioFile {
         let numbers = |key: &str, numbers: &[f64]| {
             if numbers.is_empty() { String::new() } else { format!("{key} = {numbers:?}\n") }
         };
+        if let Some(SwarmTable { robots, mothers, walls_block_radio }) = self.swarm {
+            let mothers = mothers.map_or(String::new(), |mothers| format!("mothers = {mothers}\n"));
+            let radio = walls_block_radio.map_or(String::new(), |block| format!("walls_block_radio = {block}\n"));
+            let _ = write!(text, "\n[swarm]\nrobots = {robots}\n{mothers}{radio}");
+        }
         if let Some(StartTable { centre, radius, positions }) = &self.start {
             let centre = centre.as_ref().map_or(String::new(), |Pair(centre)| format!("centre = {centre:?}\n"));
             let radius = radius.map_or(String::new(), |radius| format!("radius = {radius:?}\n"));

@@ -3,6 +3,8 @@
 use super::{Morphogen, OBSTACLE_SPACING, Ring, Scenario};
 use grn_input::{InputError, Range};
 
+/// The most targets a scenario may have. Robots know the nearest [`MAX_TARGETS`](grn_core::robot::percept::MAX_TARGETS) of them.
+pub const MOST_TARGETS: usize = 10;
 /// The most snapshots a scenario may ask for.
 pub const MAX_SNAPSHOTS: usize = 10_000;
 /// The most points of a path or polygon: whether a polygon crosses itself is found by comparing all pairs of its edges,

@@ -1,6 +1,6 @@
 //! The tables of targets, walls, discs and starts as they stand in a file.
 
-use super::{Disc, Evasion, MovingWall, Path, Presence, Start, Target};
+use super::{Disc, Evasion, MeantSwarm, MovingWall, Path, Presence, Start, Target};
 use grn_core::geometry::Point;
 use grn_input::Pair;
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,16 @@ pub(super) struct EvasionTable {
     pub distance: f64,
     pub reach: f64,
     pub speed: f64,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SwarmTable {
+    pub robots: i64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mothers: Option<i64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub walls_block_radio: Option<bool>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -80,6 +90,14 @@ impl TargetTable {
         let (path, presence) = (target.path(), target.presence());
         let evade = target.evasion().map(|Evasion { distance, reach, speed }| EvasionTable { distance, reach, speed });
         TargetTable { path: raw(path.points()), times: raw_times(path), present: raw_spans(presence), evade }
+    }
+}
+
+impl SwarmTable {
+    pub fn of(meant: &MeantSwarm) -> SwarmTable {
+        let whole = |count: usize| i64::try_from(count).unwrap_or(i64::MAX);
+        let MeantSwarm { robots, mothers, walls_block_radio } = *meant;
+        SwarmTable { robots: whole(robots), mothers: Some(whole(mothers)), walls_block_radio }
     }
 }
 

@@ -1,12 +1,12 @@
 //! The targets of a file, checked.
 
+use super::limits::MOST_TARGETS;
 use super::obstacles::Obstacles;
 use super::points::checked_points;
 use super::tables::TargetTable;
 use super::timing::checked_times;
 use super::{Evasion, Path, Presence, Target};
 use grn_core::geometry::Point;
-use grn_core::robot::percept::MAX_TARGETS;
 use grn_input::InputError;
 
 /// A target may not go into obstacles that stand still, wherever it is on its way.
@@ -15,8 +15,8 @@ pub(super) fn checked_targets(
     region: [f64; 2],
     obstacles: &Obstacles,
 ) -> Result<Vec<Target>, InputError> {
-    if !(1..=MAX_TARGETS).contains(&tables.len()) {
-        let expected = format!("a scenario has 1 to {MAX_TARGETS} [[target]] tables");
+    if !(1..=MOST_TARGETS).contains(&tables.len()) {
+        let expected = format!("a scenario has 1 to {MOST_TARGETS} [[target]] tables");
         return Err(InputError::new("target", format!("{} of them", tables.len()), expected));
     }
     let mut targets: Vec<Target> = Vec::with_capacity(tables.len());

@@ -153,8 +153,8 @@ fn too_much_together_is_refused() {
 fn targets_are_counted() {
     let cut = CHANNEL.replace("[[target]]\npath = [[3.0000, 10.0000], [17.0000, 10.0000]]", "");
     assert_eq!(Scenario::parse(&cut).unwrap_err().value(), "0 of them");
-    let many = format!("{CHANNEL}\n{}", "[[target]]\npath = [[1.0, 1.0]]\n".repeat(4));
-    assert_eq!(Scenario::parse(&many).unwrap_err().value(), "5 of them");
+    let many = format!("{CHANNEL}\n{}", "[[target]]\npath = [[1.0, 1.0]]\n".repeat(10));
+    assert_eq!(Scenario::parse(&many).unwrap_err().value(), "11 of them");
 }
 
 #[test]

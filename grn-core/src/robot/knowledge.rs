@@ -113,10 +113,10 @@ impl<S: Scalar> Knowledge<S> {
     /// Some radios (a broadcast over UDP, for one) give the robot its own messages back; it ignores them. It would
     /// otherwise take itself for a neighbour that it must keep away from.
     pub fn update(&mut self, percept: &Percept, here: Point<S>, own: u16, [now, ticks]: [u32; 2], velocity: Vector<S>) {
-        let here = millimetres(here);
+        let (at, here) = (here, millimetres(here));
         let part = S::from_ratio(ticks.min(MOST_TICKS_AT_ONCE) as i32, 8);
         for sighting in &percept.targets {
-            self.see_target(*sighting, part);
+            self.see_target(*sighting, part, at);
         }
         for &position in &percept.obstacles {
             self.obstacles.learn(&ObstacleReport { position, age: 0 });
@@ -128,7 +128,7 @@ impl<S: Scalar> Knowledge<S> {
                 continue;
             }
             if let Some(report) = &message.target {
-                self.hear_of_target(report, age_ms);
+                self.hear_of_target(report, age_ms, at);
             }
             let mut carried = self.neighbours.carried();
             if age_ms > 0 {
@@ -150,7 +150,7 @@ impl<S: Scalar> Knowledge<S> {
     /// An alpha-beta filter: a sighting corrects a `part` of the surprise, an eighth for each tick of 1/32 s since the last one, and
     /// the velocity by twice that a second. After a right-angled turn the target is expected off by up
     /// to its way in a quarter of a second, and where it is again after one and a half. One that has jumped is followed at once.
-    fn see_target(&mut self, sighting: Sighting, part: S) {
+    fn see_target(&mut self, sighting: Sighting, part: S, here: Point<S>) {
         let seen = metres(sighting.position);
         match self.targets.iter_mut().find(|known| known.target == sighting.target) {
             Some(known) => {
@@ -164,9 +164,8 @@ impl<S: Scalar> Knowledge<S> {
                 known.age = 0;
             }
             None => {
-                let known = KnownTarget { target: sighting.target, position: seen, velocity: Vector::ZERO, age: 0 };
-                // A fifth target does not fit and is left out: percepts hold at most four.
-                let _ = self.targets.push(known);
+                let new = KnownTarget { target: sighting.target, position: seen, velocity: Vector::ZERO, age: 0 };
+                self.keep(new, here);
             }
         }
     }
@@ -180,7 +179,7 @@ impl<S: Scalar> Knowledge<S> {
     ///
     /// It is older by the time it was on its way, and by one tick at least: else robots would tell each other for ever
     /// what nobody sees any more.
-    fn hear_of_target(&mut self, report: &TargetReport, age_ms: u16) {
+    fn hear_of_target(&mut self, report: &TargetReport, age_ms: u16, here: Point<S>) {
         let on_its_way = if age_ms == 0 { 1 } else { ticks_of(age_ms).clamp(1, u32::from(u8::MAX)) as u8 };
         let age = report.age.saturating_add(on_its_way);
         let known = self.targets.iter_mut().find(|known| known.target == report.target);
@@ -201,9 +200,25 @@ impl<S: Scalar> Knowledge<S> {
                 known.age = age;
             }
             Some(known) => *known = told,
-            None => {
-                let _ = self.targets.push(told);
+            None => self.keep(told, here),
+        }
+    }
+
+    /// Keeps a target that was not known; if there is no room, in the place of the one farthest from `here` if it is nearer than that.
+    /// So each robot of a swarm that follows many targets knows those around it.
+    fn keep(&mut self, new: KnownTarget<S>, here: Point<S>) {
+        let Err(new) = self.targets.push(new) else { return };
+        let squared = |known: &KnownTarget<S>| (known.position - here).square();
+        let mut farthest: Option<&mut KnownTarget<S>> = None;
+        for known in &mut self.targets {
+            if farthest.as_ref().is_none_or(|farthest| squared(known) > squared(farthest)) {
+                farthest = Some(known);
             }
+        }
+        if let Some(farthest) = farthest
+            && squared(&new) < squared(farthest)
+        {
+            *farthest = new;
         }
     }
 
@@ -307,6 +322,30 @@ mod tests {
                 });
             }
             assert!(expected[160..].iter().all(|x| x.abs() < 0.03), "{later}: {:?}", &expected[312..]);
+        }
+    }
+
+    #[test]
+    fn of_many_targets_the_nearest_are_known() {
+        let mut robot = Robot::new();
+        let report = |target: u8| {
+            let position = Millimetres { x: 1000 * i16::from(target), y: 0 };
+            let target = Some(TargetReport { target, position, velocity: [0; 2], age: 0 });
+            Heard { message: Message { sender: 1, position, target, obstacles: Vec::new() }, age_ms: 0 }
+        };
+        // The robot drives along a row of ten targets, of which it hears one after the other.
+        for (metres, expected) in [(0.0, [0, 1, 2, 3]), (5.0, [4, 5, 6, 7]), (9.0, [6, 7, 8, 9])] {
+            for tick in 0..100_u32 {
+                let pace = robot.clock.advance::<f32>(NOMINAL_TICK_US);
+                robot.knowledge.grow_older(&pace, robot.clock.tick(), Vector::ZERO, Vector::ZERO);
+                let mut percept = Percept::nothing();
+                percept.heard.push(report((tick * 7 % 10) as u8)).unwrap();
+                let here = Vector::new(metres + 0.1, 0.0);
+                robot.knowledge.update(&percept, here, 9, [robot.clock.tick(), pace.ticks], Vector::ZERO);
+            }
+            let mut known: std::vec::Vec<u8> = robot.knowledge.targets().iter().map(|known| known.target).collect();
+            known.sort_unstable();
+            assert_eq!(known, expected, "at {metres} m");
         }
     }
 

@@ -7,7 +7,7 @@ use core::fmt;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The most targets a robot sees or keeps in mind.
+/// The most targets a robot sees or keeps in mind; of more targets it keeps the nearest.
 pub const MAX_TARGETS: usize = 4;
 /// The most obstacle points a robot's own sensors report in one tick.
 pub const MAX_SEEN_OBSTACLES: usize = 8;

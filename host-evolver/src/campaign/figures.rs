@@ -2,15 +2,22 @@
 
 use super::plan::{Plan, PlannedScenario, slug};
 use super::rows::{Measure, RunRow, SimulationSummary, TransferRow};
+use super::simulate::Simulate;
 use super::tables::Tables;
 use super::unit::Unit;
 use crate::evaluation::{Model, World};
 use crate::evolve::Milestone;
 use crate::figures::{self, Pictures};
 use crate::files::{Contents, FileError, read_blob};
+use crate::realities::reality;
+use crate::record;
 use crate::run::of_world;
+use crate::simulation::simulate as simulate_one;
+use firmware_sim::scenario::Scenario;
+use grn_core::blob::Blob;
 use grn_figures::FigureError;
 use grn_optimisers::statistics::quartiles;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 /// Draws everything; `notice` hears of what cannot be drawn. Variations of a scenario are in the tables only, and so is what
@@ -54,7 +61,15 @@ pub(super) fn draw(
             let front = unit.front(plan, campaign)?;
             pictures
                 .add(&name("pareto"), figures::front(&planned_method.method.objectives(), &front, &[], &first.ring()));
-            let network = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?.network;
+            let knee = read_blob(&campaign.join(unit.folder(plan)).join("knee.grn"))?;
+            if let Some(simulate) = &plan.simulate {
+                let blob = Blob { scale: simulate.scale, ..knee.clone() };
+                for (place, world) in planned.worlds.iter().enumerate() {
+                    let name = name(&of_world("trace", place, worlds.len(), ""));
+                    swarm(&mut pictures, &name, &blob, world, simulate);
+                }
+            }
+            let network = knee.network;
             pictures.add(&name("tree"), Ok(figures::tree(&network)));
             pictures.add(&name("grn"), figures::grn(&network));
             if let Ok(model) = Model::new(&network, first.morphogen().level) {
@@ -68,12 +83,23 @@ pub(super) fn draw(
     Ok(pictures.contents)
 }
 
-/// The run whose knee has the median f2 of a method in a scenario.
+/// Draws the first of the realities that knees are simulated in; one that cannot drive a robot has none.
+fn swarm(pictures: &mut Pictures, name: &str, blob: &Blob, world: &Scenario, simulate: &Simulate) {
+    let config = reality(&simulate.config(), 1);
+    let mut recorder = record::recorder(world, &config);
+    let watch = |_| ControlFlow::Continue(());
+    if let Ok(Some(simulation)) = simulate_one(blob, world, config, simulate.number, &mut recorder, watch) {
+        pictures.add(name, figures::run(&simulation, recorder.trace(), world, blob));
+    }
+}
+
+/// The run whose knee has the median cost of a method in a scenario, or the median f2 if knees are not simulated.
 fn typical(plan: &Plan, tables: &Tables, scenario: usize, method: usize) -> Option<Unit> {
     let (scenario_name, method_name) = (&plan.scenarios[scenario].name, &plan.methods[method].name);
     let mut rows: Vec<&RunRow> =
         tables.runs.iter().filter(|run| run.scenario == *scenario_name && run.method == *method_name).collect();
-    rows.sort_by(|a, b| Measure::KneeF2.of(a).total_cmp(&Measure::KneeF2.of(b)).then(a.seed.cmp(&b.seed)));
+    let measure = if plan.simulate.is_some() { Measure::Cost } else { Measure::KneeF2 };
+    rows.sort_by(|a, b| measure.of(a).total_cmp(&measure.of(b)).then(a.seed.cmp(&b.seed)));
     let seed = rows.get(rows.len().saturating_sub(1) / 2)?.seed;
     Some(Unit { scenario, method, seed })
 }

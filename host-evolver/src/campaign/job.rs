@@ -131,7 +131,7 @@ impl<'p> Maker<'p> {
     ) -> Result<Option<Vec<u8>>, Refusal> {
         let blob = Blob::decode(knee).map_err(Refusal::internal)?;
         let Some(simulate) = &self.plan.simulate else { return Err(Refusal::internal("nothing is simulated")) };
-        let (config, numbers) = (simulate.config(), 1..=simulate.realities);
+        let (config, numbers) = (scenario.configured(simulate.config()), 1..=simulate.realities);
         let tried = if method.follows_rules() {
             rule_ring::try_all(scenario, &config, numbers, stop)
         } else {

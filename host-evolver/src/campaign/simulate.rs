@@ -66,8 +66,8 @@ impl Simulate {
     /// # Errors
     /// What is wrong, with the world's name.
     pub fn check<'s>(&self, scenarios: impl Iterator<Item = &'s Scenario>) -> Result<(), InputError> {
-        let config = self.config();
         for scenario in scenarios {
+            let config = scenario.configured(self.config());
             swarm::check(scenario, &config).and_then(|()| check_length(scenario, &config)).map_err(|error| {
                 let expected = format!("{} (in the scenario {})", error.expected(), scenario.name());
                 let key = match error.key() {

@@ -2,7 +2,9 @@
 
 use super::Failure;
 use firmware_sim::lab::{self, Laboratory};
+use firmware_sim::scenario::Scenario;
 use grn_input::InputError;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub struct Conditions {
@@ -18,6 +20,26 @@ impl Conditions {
     /// The laboratory that was asked for.
     pub fn laboratory(&self) -> Result<Laboratory, Failure> {
         set_all(lab::find(&self.lab)?, &self.set)
+    }
+
+    /// [`check_world`](Self::check_world) for the worlds in these files.
+    pub fn check_files(&self, mut paths: impl Iterator<Item = PathBuf>) -> Result<(), Failure> {
+        if self.set.is_empty() {
+            return Ok(());
+        }
+        paths.try_for_each(|path| self.check_world(&path, &Scenario::load(&path)?))
+    }
+
+    /// Refuses values that would have no effect in this world, because it says itself what swarm it is meant for.
+    pub fn check_world(&self, path: &Path, world: &Scenario) -> Result<(), Failure> {
+        let key = |assignment: &str| assignment.split('=').next().unwrap_or_default().trim().to_owned();
+        match self.set.iter().find(|assignment| world.settles(&key(assignment))) {
+            Some(assignment) => Err(Failure::Input(format!(
+                "--set {assignment}: {} says in [swarm] itself what swarm it is meant for; leave --set out, or change [swarm] there",
+                path.display()
+            ))),
+            None => Ok(()),
+        }
     }
 }
 

@@ -99,7 +99,8 @@ impl Arguments {
         let mut scenarios = Vec::new();
         for path in &self.worlds {
             let scenario = Scenario::load(path)?;
-            check_swarm(path, &scenario, &swarm)?;
+            self.conditions.check_world(path, &scenario)?;
+            check_swarm(path, &scenario, &scenario.configured(swarm.clone()))?;
             scenarios.push(scenario);
         }
         if scenarios.len() > MOST_WORLDS {
@@ -144,10 +145,11 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
         return Ok(Answer::No);
     }
     let mut works = true;
-    let (count, config) = (task.worlds().len(), task.swarm());
+    let count = task.worlds().len();
     for (place, scenario) in task.scenarios().enumerate() {
+        let config = scenario.configured(task.swarm().clone());
         let below = of_world("simulation", place, count, "");
-        let mut recorder = record::recorder(scenario, config);
+        let mut recorder = record::recorder(scenario, &config);
         let knee_path = run.path("knee.grn");
         let number = NumberType::F32;
         let simulation = watched(&knee_path, &knee, scenario, config.clone(), number, &mut recorder, &stop);

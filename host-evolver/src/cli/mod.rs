@@ -11,6 +11,7 @@ mod failure;
 mod flash;
 mod interrupt;
 mod lab;
+mod missions;
 mod options;
 mod output;
 mod progress;
@@ -20,6 +21,7 @@ mod scatter;
 mod show;
 mod simulate;
 mod snippet;
+mod survey;
 mod trial;
 
 use crate::files::FolderLock;
@@ -51,6 +53,10 @@ enum Command {
     Lab(lab::Arguments),
     /// Throw round obstacles at random around the targets' paths of a scenario.
     Scatter(scatter::Arguments),
+    /// Draw worlds at random that a swarm can pass, each for a swarm of its own.
+    Missions(missions::Arguments),
+    /// Try controllers in many missions, and count in how many they cage the targets.
+    Survey(survey::Arguments),
     /// Print what a blob holds: equations, tree, ring radius, sizes.
     Show(show::Arguments),
     /// Bring a blob onto a robot, or write it for a programmer.
@@ -138,6 +144,8 @@ fn answer(command: &Command) -> Result<Answer, Failure> {
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Lab(arguments) => lab::run(arguments),
         Command::Scatter(arguments) => scatter::run(arguments),
+        Command::Missions(arguments) => missions::run(arguments),
+        Command::Survey(arguments) => survey::run(arguments),
         Command::Flash(arguments) => flash::run(arguments),
         Command::Robots(arguments) => robots::run(arguments),
         Command::Confirm(arguments) => trial::run(arguments, trial::End::Confirm),
@@ -155,7 +163,8 @@ mod tests {
 
     /// Options whose values are words, names or paths. Every other one takes numbers, which may have a minus sign: what is
     /// wrong with them is then told with their range, and not that there is no option `-1`.
-    const WORDS: [&str; 12] = [
+    const WORDS: [&str; 13] = [
+        "class",
         "constraints",
         "image",
         "lab",

@@ -49,7 +49,7 @@ pub struct Arguments {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1, value_parser = options::seed, allow_hyphen_values = true)]
     seed: u64,
-    /// How many robots, two of them mothers [default: the laboratory's].
+    /// How many robots, two of them mothers [default: the world's, if it says so, or the laboratory's].
     #[arg(long, value_parser = robots, allow_hyphen_values = true)]
     robots: Option<usize>,
     #[command(flatten)]
@@ -110,8 +110,10 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     }
     let scenario = Scenario::load(&arguments.scenario)?;
     let lab = arguments.conditions.laboratory()?;
+    arguments.conditions.check_world(&arguments.scenario, &scenario)?;
     let config =
         SwarmConfig { seed: arguments.seed, target_speed_m_per_s: arguments.speed, ..usual_config(blob.scale, lab) };
+    let config = scenario.configured(config);
     let config = match arguments.robots {
         Some(count) => config.with_robots(count),
         None => config,

@@ -119,6 +119,7 @@ impl Trials<'_> {
                 break;
             }
             let blob = deploy::blob(network.clone(), &scenario.morphogen(), self.task.scale());
+            let swarm = scenario.configured(swarm.clone());
             let run = Setting::new(&blob, scenario, &swarm).and_then(|setting| cost(&setting, swarm.clone(), left));
             sum += run.unwrap_or(WORST_COST);
         }

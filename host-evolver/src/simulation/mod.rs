@@ -176,6 +176,18 @@ pub fn simulate_in(
     }
 }
 
+/// Whether a blob can drive robots in a world, and has a pattern there.
+///
+/// # Errors
+/// [`SimulationError::Load`] or [`SimulationError::NoPattern`].
+pub fn check_model(blob: &Blob, scenario: &Scenario, number: NumberType) -> Result<(), SimulationError> {
+    match number {
+        NumberType::F32 => native::<f32>(blob).map(drop),
+        NumberType::Q8_24 => native::<Q8_24>(blob).map(drop),
+    }?;
+    PatternRuler::new(blob, scenario).map(drop).map_err(SimulationError::NoPattern)
+}
+
 /// The controllers of a swarm in this process, by robot number.
 pub(crate) fn native<S: Scalar>(blob: &Blob) -> Result<impl Fn(usize) -> Onboard<S>, SimulationError> {
     let loaded = Arc::new(Controller::<S>::new(blob, 0).map_err(SimulationError::Load)?);

@@ -28,7 +28,8 @@ pub fn doubts(scenario: &Scenario, config: &SwarmConfig) -> Vec<String> {
         ));
     }
     let most = (TAU * ring.d_max / (2.0 * BODY_RADIUS)).floor();
-    if robots as f64 > most {
+    // Several targets have a ring each.
+    if robots as f64 > most * world.targets().len() as f64 {
         doubts.push(format!(
             "{robots} robots find no room on the ring: its longest one, of {:.2} m, holds {most} bodies; take fewer robots or a larger \
              scale",

@@ -3,6 +3,7 @@
 // These panic where nobody can hear them; the command line has its own way to speak.
 #![deny(clippy::print_stdout, clippy::print_stderr, clippy::dbg_macro)]
 
+pub mod baselines;
 pub mod campaign;
 pub mod cli;
 pub mod cluster;

@@ -164,9 +164,24 @@ pub fn try_all(
 ) -> Result<Option<Robustness>, SimulationError> {
     let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let setting = Setting::new(blob, scenario, config)?;
-    let one = |number| {
-        let simulation = simulate_in(&setting, reality(config, number), number_type, &mut (), watch)?;
+    try_each(config, numbers, &|reality| {
+        let simulation = simulate_in(&setting, reality, number_type, &mut (), watch)?;
         done();
+        Ok(simulation)
+    })
+}
+
+/// What comes out in these realities when `simulate` runs each, as [`try_all`] does it for a blob.
+///
+/// # Errors
+/// As of [`try_all`]; `Ok(None)` if a run was stopped.
+pub(crate) fn try_each(
+    config: &SwarmConfig,
+    numbers: RangeInclusive<u64>,
+    simulate: &(dyn Fn(SwarmConfig) -> Result<Option<Simulation>, SimulationError> + Sync),
+) -> Result<Option<Robustness>, SimulationError> {
+    let one = |number| {
+        let simulation = simulate(reality(config, number))?;
         Ok(simulation.map(|simulation| Reality::of(number, &simulation)))
     };
     let numbers: Vec<u64> = numbers.collect();

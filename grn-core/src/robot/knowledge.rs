@@ -44,11 +44,19 @@ pub struct KnownTarget<S> {
     age: u8,
 }
 
+impl<S: Scalar> Default for Knowledge<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Scalar> Knowledge<S> {
+    /// Of a robot that knows nothing yet.
     pub fn new() -> Self {
         Knowledge { targets: Vec::new(), obstacles: ObstacleMap::new(), neighbours: Neighbours::new() }
     }
 
+    /// The targets that it knows, where they are expected to be now.
     pub fn targets(&self) -> &[KnownTarget<S>] {
         &self.targets
     }
@@ -58,6 +66,7 @@ impl<S: Scalar> Knowledge<S> {
         self.obstacles.near()
     }
 
+    /// The robots nearby.
     pub fn neighbours(&self) -> &Neighbours<S> {
         &self.neighbours
     }

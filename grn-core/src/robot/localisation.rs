@@ -66,6 +66,12 @@ pub struct Localisation<S> {
     doubted_us: u32,
 }
 
+impl<S: Scalar> Default for Localisation<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Scalar> Localisation<S> {
     /// Of a robot at rest somewhere.
     pub fn new() -> Self {

@@ -16,6 +16,7 @@ pub mod message;
 mod motion;
 mod neighbours;
 mod obstacles;
+pub mod parts;
 pub mod percept;
 mod position;
 pub mod radio;

@@ -60,7 +60,14 @@ pub struct Neighbours<S> {
     carried: Vector<S>,
 }
 
+impl<S: Scalar> Default for Neighbours<S> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Scalar> Neighbours<S> {
+    /// Of a robot that has heard nobody.
     pub fn new() -> Self {
         Neighbours {
             known: Vec::new(),
@@ -87,6 +94,7 @@ impl<S: Scalar> Neighbours<S> {
         here - self.carried
     }
 
+    /// The neighbours kept in mind, each where it was heard: see [`Neighbour::offset`].
     pub fn known(&self) -> &[Neighbour<S>] {
         &self.known
     }

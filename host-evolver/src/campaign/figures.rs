@@ -53,7 +53,8 @@ pub(super) fn draw(
     for (place, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let worlds: Vec<World> = planned.worlds.iter().cloned().map(World::new).collect();
         let first = &planned.worlds[0];
-        for (method, planned_method) in plan.methods.iter().enumerate() {
+        let models = plan.methods.iter().enumerate().filter(|(_, planned)| !planned.method.follows_rules());
+        for (method, planned_method) in models {
             let Some(unit) = typical(plan, tables, place, method) else { continue };
             let name =
                 |what: &str| format!("typical/{}/{}/{what}.svg", slug(&planned.name), slug(&planned_method.name));
@@ -135,7 +136,8 @@ fn convergence(plan: &Plan, campaign: &Path) -> Result<grn_figures::ConvergenceF
     for (scenario, planned) in plan.scenarios.iter().enumerate().filter(|(_, planned)| !planned.varied) {
         let mut series = Vec::new();
         for (method, planned_method) in plan.methods.iter().enumerate() {
-            let units = (1..=plan.seeds).map(|seed| Unit { scenario, method, seed });
+            let units = 1..=planned_method.method.runs(plan.seeds);
+            let units = units.map(|seed| Unit { scenario, method, seed });
             let histories: Vec<Vec<Milestone>> =
                 units.map(|unit| unit.history(plan, campaign)).collect::<Result<_, _>>()?;
             let moments = histories.iter().map(Vec::len).min().unwrap_or(0);

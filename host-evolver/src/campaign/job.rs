@@ -1,8 +1,9 @@
 //! What a campaign computes, apart from where: a job goes to whoever makes it, and its product comes back.
 
-use super::method::Outcome;
+use super::method::{Method, Outcome};
 use super::plan::{Place, Plan};
 use super::unit::Unit;
+use crate::baselines::rule_ring;
 use crate::evaluation::{Evaluation, Evaluator, Model, World};
 use crate::evolve::{FrontMember, Task, TaskError};
 use crate::files::{self, Contents, FileError};
@@ -33,6 +34,8 @@ pub enum Job {
     Simulations {
         /// The world.
         world: Place,
+        /// The place of the method that has found it.
+        method: usize,
         /// Its blob.
         knee: Vec<u8>,
     },
@@ -98,8 +101,9 @@ impl<'p> Maker<'p> {
         match job {
             &Job::Run(unit) => Ok(self.run(unit, stop)?.map(Product::Run)),
             Job::Trials { world, models } => Ok(trials(self.plan.world(*world), models, stop)?.map(Product::Trials)),
-            Job::Simulations { world, knee } => {
-                Ok(self.simulations(self.plan.world(*world), knee, stop)?.map(Product::Simulations))
+            Job::Simulations { world, method, knee } => {
+                let method = &self.plan.methods[*method].method;
+                Ok(self.simulations(self.plan.world(*world), method, knee, stop)?.map(Product::Simulations))
             }
         }
     }
@@ -118,12 +122,22 @@ impl<'p> Maker<'p> {
         Ok(Some(contents))
     }
 
-    fn simulations(&self, scenario: &Scenario, knee: &[u8], stop: &AtomicBool) -> Result<Option<Vec<u8>>, Refusal> {
+    fn simulations(
+        &self,
+        scenario: &Scenario,
+        method: &Method,
+        knee: &[u8],
+        stop: &AtomicBool,
+    ) -> Result<Option<Vec<u8>>, Refusal> {
         let blob = Blob::decode(knee).map_err(Refusal::internal)?;
         let Some(simulate) = &self.plan.simulate else { return Err(Refusal::internal("nothing is simulated")) };
-        let numbers = 1..=simulate.realities;
-        let config = scenario.configured(simulate.config());
-        match realities::try_all(&blob, scenario, &config, simulate.number, numbers, stop, &|| ()) {
+        let (config, numbers) = (scenario.configured(simulate.config()), 1..=simulate.realities);
+        let tried = if method.follows_rules() {
+            rule_ring::try_all(scenario, &config, numbers, stop)
+        } else {
+            realities::try_all(&blob, scenario, &config, simulate.number, numbers, stop, &|| ())
+        };
+        match tried {
             Ok(robustness) => Ok(robustness.map(|robustness| files::csv_records(&robustness.realities))),
             // Some runs find nothing that drives a robot: that is a result, too.
             Err(SimulationError::Load(_) | SimulationError::NoPattern(_)) => Ok(Some(Vec::new())),

@@ -1,9 +1,12 @@
 //! The ways to a model that a campaign can compare. Another is a variant of [`Method`] and its run.
 
-use crate::evaluation::{ConstraintNames, World};
+use crate::baselines::rule_ring;
+use crate::evaluation::{ConstraintNames, Constraints, Evaluation, Evaluator, Model, World};
 use crate::evolve::eh_grn::{self, Structure};
 use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings, Task};
+use crate::model::describe;
 use crate::model::variation::{Inputs, MotifSet};
+use grn_core::network::Network;
 use grn_optimisers::knee::Knee;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
@@ -43,6 +46,9 @@ pub enum Method {
         /// Which printed structure.
         structure: Structure,
     },
+    /// The ring by plain rules, which nothing is evolved for: see [`rule_ring`]. Where models are evaluated the circle that it aims at
+    /// stands for it.
+    RuleRing,
 }
 
 /// Which member of a front is deployed.
@@ -88,17 +94,35 @@ impl Method {
         Some(settings)
     }
 
+    /// Runs of a campaign with so many seeds: one if seeds change nothing.
+    pub fn runs(&self, seeds: u64) -> u64 {
+        if self.follows_rules() { 1 } else { seeds }
+    }
+
+    /// What a run spends of a budget: evaluations of f2.
+    pub fn spends(&self, evaluations: usize) -> usize {
+        if self.follows_rules() { 1 } else { evaluations }
+    }
+
+    /// Whether robots follow rules instead of a model.
+    pub fn follows_rules(&self) -> bool {
+        *self == Method::RuleRing
+    }
+
     /// What its fronts are fronts of.
     pub fn objectives(&self) -> Objectives {
         match self {
             Method::Mogp { objectives: Some(objectives), .. } => objectives.clone(),
-            Method::Mogp { objectives: None, .. } | Method::EhGrn { .. } => Objectives::paper(),
+            Method::Mogp { objectives: None, .. } | Method::EhGrn { .. } | Method::RuleRing => Objectives::paper(),
         }
     }
 
     /// The evaluations that its first generation takes.
     pub(super) fn least_evaluations(&self) -> usize {
-        self.settings(0, 1).map_or(eh_grn::POPULATION, |settings| settings.least_evaluations())
+        match self {
+            Method::RuleRing => self.spends(0),
+            _ => self.settings(0, 1).map_or(eh_grn::POPULATION, |settings| settings.least_evaluations()),
+        }
     }
 
     /// Runs it; `None` if it was stopped. The outcome depends on its arguments only.
@@ -112,6 +136,7 @@ impl Method {
                 Some(outcome)
             }
             Method::EhGrn { structure } => baseline(task.worlds(), *structure, evaluations, seed, stop),
+            Method::RuleRing => rule_ring(task.worlds()),
         }
     }
 }
@@ -140,6 +165,23 @@ fn deploy_best(objectives: &Objectives, front: &mut [FrontMember]) {
     }
 }
 
+/// The circle that the rules aim at in the first of the worlds, by what it is worth in all of them.
+fn rule_ring(worlds: &[World]) -> Option<Outcome> {
+    let scenario = worlds.first()?.scenario();
+    let network = rule_ring::circle(rule_ring::radius(scenario.ring()), &scenario.morphogen()).ok()?;
+    let model = Model::new(&network, scenario.morphogen().level).ok();
+    let mut evaluator = Evaluator::among(worlds, Constraints::PAPER);
+    let evaluation = model.map_or(Evaluation::NO_PATTERN, |model| evaluator.evaluate(&model));
+    let nodes = describe::tree_size(&network);
+    let history = vec![eh_grn::milestone(nodes, 1, &evaluation)];
+    Some(Outcome { front: vec![only_member(network, nodes, evaluation)], history })
+}
+
+fn only_member(network: Network<f32>, nodes: usize, Evaluation { f2, violation }: Evaluation) -> FrontMember {
+    let knee = Knee { angle: true, utility: true, parsimony: false };
+    FrontMember { network, nodes, f2, further: Vec::new(), violation, knee }
+}
+
 fn baseline(
     worlds: &[World],
     structure: Structure,
@@ -148,13 +190,6 @@ fn baseline(
     stop: &AtomicBool,
 ) -> Option<Outcome> {
     let (tuned, history) = eh_grn::search(structure, worlds, evaluations, seed, stop)?;
-    let front = vec![FrontMember {
-        network: structure.network(&tuned.thetas)?,
-        nodes: structure.nodes(),
-        f2: tuned.evaluation.f2,
-        further: Vec::new(),
-        violation: tuned.evaluation.violation,
-        knee: Knee { angle: true, utility: true, parsimony: false },
-    }];
-    Some(Outcome { front, history })
+    let member = only_member(structure.network(&tuned.thetas)?, structure.nodes(), tuned.evaluation);
+    Some(Outcome { front: vec![member], history })
 }

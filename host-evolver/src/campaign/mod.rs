@@ -130,8 +130,7 @@ impl Campaign {
 
     /// Evaluations of f2 that all runs and trials are worth, for a progress bar.
     pub fn work(&self) -> u64 {
-        let runs: usize =
-            Unit::all(&self.plan).into_iter().map(|unit| self.plan.scenarios[unit.scenario].evaluations).sum();
+        let runs: usize = Unit::all(&self.plan).into_iter().map(|unit| unit.evaluations(&self.plan)).sum();
         let simulations = self.plan.simulate.as_ref().map_or(0, |simulate| {
             let knee = |unit: Unit| self.plan.simulated_in(unit.scenario).len() as u64;
             Unit::all(&self.plan).into_iter().map(knee).sum::<u64>() * simulate.worth()
@@ -217,7 +216,7 @@ impl Campaign {
     /// Has the missing runs of a shard made. Returns how many runs, of all shards, are there then.
     fn runs(&self, shard: Shard, site: &Site<'_>, team: &mut Team) -> Result<usize, FileError> {
         let units = Unit::all(&self.plan);
-        let worth = |unit: Unit| self.plan.scenarios[unit.scenario].evaluations as u64;
+        let worth = |unit: Unit| unit.evaluations(&self.plan) as u64;
         // What is refused is refused before the first run.
         let found: Vec<Found> =
             units.iter().map(|unit| unit.find(&self.plan, self.folder())).collect::<Result<_, _>>()?;
@@ -284,12 +283,13 @@ impl Campaign {
 
 /// A path of each folder that a campaign fills.
 fn paths(plan: &Plan) -> Vec<PathBuf> {
-    let units = Unit::all(plan).into_iter().filter(|unit| unit.seed == plan.seeds);
+    let is_last = |unit: &Unit| unit.seed == plan.methods[unit.method].method.runs(plan.seeds);
+    let units = Unit::all(plan).into_iter().filter(is_last);
     let runs = units.map(|unit| unit.folder(plan).join("00-31-nodes.grn"));
     let names = plan.transfers.iter().map(|planned| planned.name.as_str());
     let names = names.chain(plan.scenarios.iter().map(|planned| planned.name.as_str()));
     let trials = names.map(|name| Path::new(Trials::FOLDER).join(slug(name)).join("000-0123456789ab.csv"));
-    let units = Unit::all(plan).into_iter().filter(|unit| plan.simulate.is_some() && unit.seed == plan.seeds);
+    let units = Unit::all(plan).into_iter().filter(|unit| plan.simulate.is_some() && is_last(unit));
     let simulations = units.flat_map(|unit| {
         let folder = move |place| Knee::folder(plan, unit, place).join("000-0123456789ab.csv");
         plan.simulated_in(unit.scenario).into_iter().map(folder)

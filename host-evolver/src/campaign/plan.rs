@@ -68,9 +68,14 @@ impl Plan {
         simulate.check(own.chain(others))
     }
 
+    /// Runs of all methods in one scenario.
+    pub fn runs_each(&self) -> u64 {
+        self.methods.iter().map(|planned| planned.method.runs(self.seeds)).sum()
+    }
+
     /// How many models are tried in how many worlds, altogether.
     pub fn trials(&self) -> u64 {
-        let knees = self.methods.len() as u64 * self.seeds;
+        let knees = self.runs_each();
         let models = self.models.len() as u64;
         let own = self.scenarios.iter().map(|planned| {
             let knees = if planned.worlds.len() > 1 { knees } else { 0 };

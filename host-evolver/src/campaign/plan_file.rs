@@ -73,6 +73,7 @@ struct MethodTable {
 enum Algorithm {
     Mogp,
     EhGrn,
+    RuleRing,
 }
 
 #[derive(Deserialize)]
@@ -102,6 +103,11 @@ impl PlanFile {
         check_names("transfer", transfers.iter().map(TransferTable::name))?;
         vary.check()?;
         let methods = planned_methods(methods)?;
+        let is_ruled = |planned: &PlannedMethod| planned.method.follows_rules();
+        if let (Some(place), None) = (methods.iter().position(is_ruled), &simulate) {
+            let expected = "evolves nothing: its robots are only simulated; say with [simulate] in what laboratory";
+            return Err(InputError::new(format!("method[{place}].algorithm"), "\"rule-ring\"", expected));
+        }
         let scenarios = planned_scenarios(scenarios, &methods, &vary, folder)?;
         let models = models.into_iter().enumerate().map(|(place, table)| planned_model(place, table, folder));
         let models = models.collect::<Result<Vec<_>, _>>()?;
@@ -137,6 +143,17 @@ fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, Input
         let foreign = |name: &str, of: &str| {
             InputError::new(key(name), "", format!("algorithm \"{of}\" has no such key; remove it"))
         };
+        let of_mogp = [
+            ("motifs", motifs.is_some()),
+            ("de_generations", de_generations.is_some()),
+            ("objectives", objectives.is_some()),
+            ("constraints", constraints.is_some()),
+            ("realities", realities.is_some()),
+            ("inputs", inputs.is_some()),
+            ("random", random.is_some()),
+            ("deploys", deploys.is_some()),
+        ];
+        let given = of_mogp.into_iter().find_map(|(name, is_given)| is_given.then_some(name));
         let method = match algorithm {
             Algorithm::Mogp if structure.is_some() => return Err(foreign("structure", "mogp")),
             Algorithm::Mogp => {
@@ -153,22 +170,14 @@ fn planned_methods(tables: Vec<MethodTable>) -> Result<Vec<PlannedMethod>, Input
                     deploys,
                 }
             }
-            Algorithm::EhGrn => {
-                let of_mogp = [
-                    ("motifs", motifs.is_some()),
-                    ("de_generations", de_generations.is_some()),
-                    ("objectives", objectives.is_some()),
-                    ("constraints", constraints.is_some()),
-                    ("realities", realities.is_some()),
-                    ("inputs", inputs.is_some()),
-                    ("random", random.is_some()),
-                    ("deploys", deploys.is_some()),
-                ];
-                if let Some((given, _)) = of_mogp.into_iter().find(|(_, is_given)| *is_given) {
-                    return Err(foreign(given, "eh-grn"));
-                }
-                Method::EhGrn { structure: structure.ok_or_else(|| missing("structure", "eh-grn"))? }
-            }
+            Algorithm::EhGrn => match given {
+                Some(given) => return Err(foreign(given, "eh-grn")),
+                None => Method::EhGrn { structure: structure.ok_or_else(|| missing("structure", "eh-grn"))? },
+            },
+            Algorithm::RuleRing => match given.or(structure.map(|_| "structure")) {
+                Some(given) => return Err(foreign(given, "rule-ring")),
+                None => Method::RuleRing,
+            },
         };
         Ok(PlannedMethod { name, baseline, method })
     };
@@ -187,9 +196,9 @@ fn planned_model(place: usize, table: ModelTable, folder: &Path) -> Result<Plann
 
 /// What a campaign costs altogether.
 fn check_work(plan: &Plan) -> Result<(), InputError> {
-    let runs = plan.scenarios.len() as u64 * plan.methods.len() as u64 * plan.seeds;
+    let runs = plan.scenarios.len() as u64 * plan.runs_each();
     let evaluations: u64 = plan.scenarios.iter().map(|planned| planned.evaluations as u64).sum();
-    let work = evaluations * plan.methods.len() as u64 * plan.seeds;
+    let work = evaluations * plan.runs_each();
     let too_much = [
         (runs, MOST_RUNS, "runs of all methods in all scenarios"),
         (work, MOST_WORK, "evaluations of all runs"),

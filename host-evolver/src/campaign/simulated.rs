@@ -20,6 +20,8 @@ pub struct Knee<'p> {
     pub place: Place,
     world: &'p Scenario,
     simulate: &'p Simulate,
+    /// Whether robots follow the rules of its method instead.
+    follows_rules: bool,
     blob: Blob,
     /// The same as bytes.
     bytes: Vec<u8>,
@@ -43,6 +45,7 @@ impl<'p> Knee<'p> {
                 place,
                 world: plan.world(place),
                 simulate,
+                follows_rules: plan.methods[unit.method].method.follows_rules(),
                 blob: blob.clone(),
                 bytes: bytes.clone(),
                 folder: Self::folder(plan, unit, place),
@@ -76,7 +79,8 @@ impl Part for Knee<'_> {
         let Simulate { lab, realities, seed, scale, speed_m_per_s, number } = self.simulate;
         let identity: String = self.blob.identity().iter().map(|byte| format!("{byte:02x}")).collect();
         let run = format!("{} {identity} {realities} {seed} {scale} {speed_m_per_s} {number}\n", files::VERSION);
-        [run, self.world.to_toml(), lab::write(lab)].concat()
+        let rules = if self.follows_rules { "by rules\n" } else { "" };
+        [run, rules.into(), self.world.to_toml(), lab::write(lab)].concat()
     }
 
     fn worth(&self) -> u64 {
@@ -84,7 +88,7 @@ impl Part for Knee<'_> {
     }
 
     fn job(&self) -> Job {
-        Job::Simulations { world: self.place, knee: self.bytes.clone() }
+        Job::Simulations { world: self.place, method: self.unit.method, knee: self.bytes.clone() }
     }
 
     fn csv(&self, product: Product) -> Option<Vec<u8>> {

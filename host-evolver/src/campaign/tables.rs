@@ -114,7 +114,7 @@ fn run_row(unit: Unit, plan: &Plan, campaign: &Path, costs: Option<(f64, f64)>) 
         scenario: planned.name.clone(),
         method: plan.methods[unit.method].name.clone(),
         seed: unit.seed,
-        evaluations: planned.evaluations,
+        evaluations: unit.evaluations(plan),
         members: front.len(),
         best_f2: best.f2,
         best_nodes: best.nodes,

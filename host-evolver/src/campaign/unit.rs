@@ -61,7 +61,16 @@ impl Unit {
     pub fn all(plan: &Plan) -> Vec<Unit> {
         let pairs = (0..plan.scenarios.len())
             .flat_map(|scenario| (0..plan.methods.len()).map(move |method| (scenario, method)));
-        pairs.flat_map(|(scenario, method)| (1..=plan.seeds).map(move |seed| Unit { scenario, method, seed })).collect()
+        let units = |(scenario, method): (usize, usize)| {
+            let seeds = plan.methods[method].method.runs(plan.seeds);
+            (1..=seeds).map(move |seed| Unit { scenario, method, seed })
+        };
+        pairs.flat_map(units).collect()
+    }
+
+    /// What it spends of its budget: evaluations of f2.
+    pub fn evaluations(self, plan: &Plan) -> usize {
+        plan.methods[self.method].method.spends(plan.scenarios[self.scenario].evaluations)
     }
 
     /// Its folder within the campaign's.

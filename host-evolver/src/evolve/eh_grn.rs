@@ -116,7 +116,7 @@ pub fn search(
         if order.len() == POPULATION {
             cma.tell(&order);
         }
-        history.extend(best.as_ref().map(|best| milestone(structure, spent, best)));
+        history.extend(best.as_ref().map(|best| milestone(structure.nodes(), spent, &best.evaluation)));
     }
     best.map(|best| (best, history))
 }
@@ -133,9 +133,10 @@ fn evaluate_all(
     evaluator.evaluate_best(&models, POPULATION / 2, None)
 }
 
-fn milestone(structure: Structure, evaluations: usize, best: &Tuned) -> Milestone {
-    let feasible = best.evaluation.is_feasible().then_some(best.evaluation.f2);
-    let point = feasible.map(|f2| [structure.nodes() as f64, f2]);
+/// How far a search has come whose best model has so many nodes.
+pub(crate) fn milestone(nodes: usize, evaluations: usize, best: &Evaluation) -> Milestone {
+    let feasible = best.is_feasible().then_some(best.f2);
+    let point = feasible.map(|f2| [nodes as f64, f2]);
     let count = usize::from(feasible.is_some());
     let hypervolume = front_hypervolume(point.into_iter());
     Milestone { evaluations, best_f2: feasible, best_cost: None, feasible: count, front: count, hypervolume }

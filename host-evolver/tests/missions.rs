@@ -184,3 +184,33 @@ fn a_survey_refuses_what_it_cannot_try() -> Outcome {
     assert_refused(&survey(&folder, &[&blob]).output()?, &["0001-door.toml"]);
     Ok(())
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_survey_keeps_what_is_done() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    let folder = scratch.path().join("missions");
+    // More than can be done before the interruption.
+    assert_code(&missions(&folder, &[&["--count", "60"][..], &SMALL].concat()).output()?, 0);
+    let out = scratch.path().join("survey.csv").display().to_string();
+    let blob = model().display().to_string();
+    let mut command = grn();
+    command.arg("survey").arg(&folder).args([
+        &blob,
+        "--circle",
+        "--realities",
+        "1000",
+        "--threads",
+        "1",
+        "--out",
+        &out,
+    ]);
+    let child = command.spawn()?;
+    std::thread::sleep(std::time::Duration::from_secs(4));
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status()?;
+    assert!(killed.success());
+    let stopped = child.wait_with_output()?;
+    assert_code(&stopped, 130);
+    assert!(text(&stopped.stderr).contains("of 120 trials; the same command goes on"), "{}", text(&stopped.stderr));
+    Ok(())
+}

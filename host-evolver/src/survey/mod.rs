@@ -167,6 +167,10 @@ impl Survey {
         let missing: Vec<usize> = (0..self.trials()).filter(|&place| known[place].is_none()).collect();
         let rows = Mutex::new(known);
         let one = |place: usize| {
+            // To set a trial up takes time, too, and there may be thousands of them.
+            if stop.load(Relaxed) {
+                return Ok(());
+            }
             let Some(row) = self.trial(place, stop, listener.simulated)? else { return Ok(()) };
             let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
             rows[place] = Some(row);

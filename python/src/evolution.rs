@@ -3,7 +3,7 @@
 use crate::attention::attended;
 use crate::blob::Blob;
 use crate::errors::{about, failed, refused};
-use crate::laboratory::found;
+use crate::laboratory::{check_settings, found};
 use crate::scenario::GivenScenario;
 use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario;
@@ -140,6 +140,7 @@ pub fn evolve(
         realities: realities.unwrap_or(usual.realities),
         ..usual
     };
+    scenarios.iter().try_for_each(|scenario| check_settings(scenario, &set))?;
     let order = Order { scenarios, settings, scale, lab: found(&lab, &set)?, out, resume };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(about("threads"))?;
     let tell =

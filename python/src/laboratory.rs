@@ -1,7 +1,8 @@
 //! The conditions that robots work under.
 
-use crate::errors::failed;
+use crate::errors::{failed, refused};
 use firmware_sim::lab::{self, Laboratory};
+use firmware_sim::scenario::Scenario;
 use host_evolver::files;
 use pyo3::prelude::*;
 
@@ -12,6 +13,17 @@ pub fn found(name_or_path: &str, set: &[String]) -> PyResult<Laboratory> {
         lab::set(laboratory, assignment)
     });
     changed.map_err(|error| failed(&error))
+}
+
+/// Refuses settings that would have no effect in this world, because it says itself what swarm it is meant for.
+pub fn check_settings(world: &Scenario, set: &[String]) -> PyResult<()> {
+    match world.settled(set) {
+        Some(setting) => Err(refused(format!(
+            "set {setting}: {} says in [swarm] itself what swarm it is meant for; leave this out, or change [swarm] there",
+            world.name()
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// A laboratory with every value, as JSON.

@@ -3,7 +3,7 @@
 use crate::attention::attended;
 use crate::blob::GivenBlob;
 use crate::errors::{about, failed, refused};
-use crate::laboratory::found;
+use crate::laboratory::{check_settings, found};
 use crate::recorded::{Run, replay};
 use crate::robot::number_type;
 use crate::scenario::GivenScenario;
@@ -42,6 +42,7 @@ impl Order<'_> {
     /// Loads and checks everything.
     fn get(self) -> PyResult<(Blob, Scenario, SwarmConfig, NumberType)> {
         let (blob, scenario) = (scaled(self.blob.get()?, self.scale)?, self.scenario.get()?);
+        check_settings(&scenario, &self.set)?;
         let usual = usual_config(blob.scale, found(&self.lab, &self.set)?);
         let config = SwarmConfig { seed: self.seed, target_speed_m_per_s: self.speed, ..usual };
         let mut config = scenario.configured(config);

@@ -58,6 +58,15 @@ def test_a_run_in_a_laboratory_is_that_of_the_command_line(model, channel, grn_c
     assert run.metrics != grn.simulate(model, channel).metrics
 
 
+def test_a_world_s_own_swarm_goes_before_the_laboratory(model, channel, tmp_path):
+    world = tmp_path / "world.toml"
+    world.write_text(channel.read_text() + "\n[swarm]\nrobots = 14\n")
+    run = grn.simulate(model, world, speed=0.1)
+    assert run.positions.shape[1] == 14
+    with pytest.raises(grn.GrnError, match="set robots.count=9: channel says in .swarm. itself"):
+        grn.simulate(model, world, set={"robots.count": 9})
+
+
 def test_realities_are_those_of_the_command_line(model, channel, grn_command, tmp_path):
     command = [grn_command, "simulate", str(model), str(channel), "--speed", "0.1", "--realities", "5", "--json"]
     told = json.loads(subprocess.run(command, capture_output=True, text=True).stdout)

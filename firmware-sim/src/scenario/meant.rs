@@ -58,9 +58,12 @@ impl Scenario {
         config
     }
 
-    /// Whether this key of a laboratory, such as `robots.count`, has no effect in this world, because the world says it itself.
-    pub fn settles(&self, key: &str) -> bool {
-        self.meant_swarm.is_some_and(|meant| meant.keys().any(|own| own == key))
+    /// The first of these settings of a laboratory, such as `robots.count=20`, that has no effect in this world, because the world says it
+    /// itself.
+    pub fn settled<'s>(&self, settings: &'s [String]) -> Option<&'s str> {
+        let key = |setting: &str| setting.split('=').next().unwrap_or_default().trim().to_owned();
+        let meant = self.meant_swarm?;
+        settings.iter().map(String::as_str).find(|setting| meant.keys().any(|own| own == key(setting)))
     }
 }
 
@@ -86,11 +89,13 @@ mod tests {
         let Laboratory { robots, radio, ref sighting, .. } = world.configured(hostile.clone()).lab;
         assert_eq!((robots.count, robots.mothers, radio.walls_block), (40, 8, true));
         assert_eq!((radio.loss, sighting), (hostile.lab.radio.loss, &hostile.lab.sighting));
-        assert!(world.settles("robots.count") && world.settles("radio.walls_block") && !world.settles("radio.loss"));
+        let settings = ["radio.loss=0.3", "radio.walls_block = false", "robots.count=9"].map(String::from);
+        assert_eq!(world.settled(&settings), Some("radio.walls_block = false"));
+        assert_eq!(world.settled(&settings[..1]), None);
 
         let open = Scenario::parse(WORLD).unwrap();
         assert_eq!(open.configured(hostile.clone()), hostile);
-        assert!(!open.settles("robots.count"));
+        assert_eq!(open.settled(&settings), None);
     }
 
     #[test]
@@ -99,7 +104,7 @@ mod tests {
         let walls_block = || SwarmConfig { lab: Shipped::Hostile.laboratory(), ..SwarmConfig::default() };
         assert_eq!(world.meant_swarm().map(|meant| (meant.robots, meant.mothers)), Some((40, 2)));
         assert_eq!(world.configured(walls_block()).lab.radio, walls_block().lab.radio);
-        assert!(!world.settles("radio.walls_block"));
+        assert_eq!(world.settled(&["radio.walls_block=true".into()]), None);
         assert_eq!(with("robots = 1").unwrap().meant_swarm().map(|meant| meant.mothers), Some(1));
     }
 

@@ -32,8 +32,7 @@ impl Conditions {
 
     /// Refuses values that would have no effect in this world, because it says itself what swarm it is meant for.
     pub fn check_world(&self, path: &Path, world: &Scenario) -> Result<(), Failure> {
-        let key = |assignment: &str| assignment.split('=').next().unwrap_or_default().trim().to_owned();
-        match self.set.iter().find(|assignment| world.settles(&key(assignment))) {
+        match world.settled(&self.set) {
             Some(assignment) => Err(Failure::Input(format!(
                 "--set {assignment}: {} says in [swarm] itself what swarm it is meant for; leave --set out, or change [swarm] there",
                 path.display()

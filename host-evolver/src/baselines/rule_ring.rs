@@ -17,17 +17,16 @@
 //! Lengths follow from the world's ring and the robot's body, and no number was fitted. The rules 2, 5 and 6 were chosen looking at six
 //! worlds of `scenarios/adaptive`: there this is the best that we could make of a ring, not a first guess.
 
-mod circle;
-
+use super::circle_blob;
 use crate::realities::{Robustness, try_each};
 use crate::simulation::{Setting, Simulation, SimulationError, run};
-use circle::ruler_of;
 use core::f32::consts::PI;
 use firmware_sim::brain::{Brain, BrainError};
 use firmware_sim::config::SwarmConfig;
-use firmware_sim::scenario::{Ring, Scenario};
+use firmware_sim::scenario::{Morphogen, Ring, Scenario};
 use firmware_sim::trace::Observer;
-use grn_core::blob::Gains;
+use grn_core::blob::{Blob, Gains};
+use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::BODY_RADIUS;
 use grn_core::robot::message::BROADCAST_PERIOD;
@@ -36,8 +35,6 @@ use grn_core::robot::{Command, Message, Millimetres, Percept};
 use grn_core::scalar::NumberType;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-pub use circle::circle;
 
 /// How fast a robot goes to its ring, or to its place at home, per metre of distance, 1/s.
 const TO_RING: f32 = 1.0;
@@ -283,10 +280,21 @@ pub fn simulate(
     watch: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Simulation>, SimulationError> {
     let (ring, scale) = (scenario.ring(), config.scale);
-    let ruler = ruler_of(radius(ring), scale as f32)?;
+    let ruler = ruler(radius(ring), scale as f32)?;
     let [real_radius, farthest] = [radius(ring), ring.d_max].map(|length| (length * scale) as f32);
     let brain = |robot: usize| RuleRing::new(robot as u16, real_radius, farthest);
     run(&Setting::new(&ruler, scenario, &config)?, config, NumberType::F32, brain, observer, watch)
+}
+
+/// The circle that runs are measured against. σ_t is half the radius, so narrow that circles around two targets hardly bulge towards each
+/// other.
+fn ruler(radius: f64, scale: f32) -> Result<Blob, SimulationError> {
+    let target_width = radius / 2.0;
+    circle_blob(
+        radius,
+        &Morphogen { kernel: Kernel::Gaussian, target_width, obstacle_width: target_width, level: 0.5 },
+        scale,
+    )
 }
 
 /// [`simulate`] in these realities, as [`try_all`](crate::realities::try_all) tries a blob.

@@ -1,6 +1,6 @@
 //! The ways to a model that a campaign can compare. Another is a variant of [`Method`] and its run.
 
-use crate::baselines::rule_ring;
+use crate::baselines::{self, rule_ring};
 use crate::evaluation::{ConstraintNames, Constraints, Evaluation, Evaluator, Model, World};
 use crate::evolve::eh_grn::{self, Structure};
 use crate::evolve::{Advance, FrontMember, Milestone, Objectives, Search, Settings, Task};
@@ -168,7 +168,7 @@ fn deploy_best(objectives: &Objectives, front: &mut [FrontMember]) {
 /// The circle that the rules aim at in the first of the worlds, by what it is worth in all of them.
 fn rule_ring(worlds: &[World]) -> Option<Outcome> {
     let scenario = worlds.first()?.scenario();
-    let network = rule_ring::circle(rule_ring::radius(scenario.ring()), &scenario.morphogen()).ok()?;
+    let network = baselines::circle(rule_ring::radius(scenario.ring()), &scenario.morphogen()).ok()?;
     let model = Model::new(&network, scenario.morphogen().level).ok();
     let mut evaluator = Evaluator::among(worlds, Constraints::PAPER);
     let evaluation = model.map_or(Evaluation::NO_PATTERN, |model| evaluator.evaluate(&model));

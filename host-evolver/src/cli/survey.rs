@@ -155,7 +155,7 @@ impl Arguments {
             contenders.push(Contender::blob(path.display().to_string(), blob));
         }
         if self.circle {
-            contenders.push(Contender::best_circle(self.scale)?);
+            contenders.push(Contender::best_circle(self.scale));
         }
         let names: Vec<&str> = contenders.iter().map(|contender| contender.name.as_str()).collect();
         if let Some(place) = (1..names.len()).find(|&place| names[..place].contains(&names[place])) {

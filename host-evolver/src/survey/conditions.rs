@@ -1,14 +1,14 @@
 //! What is tried, and how.
 
+use crate::baselines::circle_blob;
 use crate::files::{VERSION, blob_bytes, sha256};
-use crate::missions::{Circle, MissionRow};
+use crate::missions::MissionRow;
 use crate::model::deploy::DEFAULT_SCALE;
-use crate::simulation::usual_config;
+use crate::simulation::{SimulationError, usual_config};
 use firmware_sim::config::SwarmConfig;
 use firmware_sim::lab::Laboratory;
 use firmware_sim::scenario::Scenario;
 use grn_core::blob::Blob;
-use grn_core::network::NetworkError;
 use grn_core::scalar::NumberType;
 
 /// How many hexadecimal digits of a hash make a key: two trials of a million have the same one with a probability of 1 in 10^8.
@@ -25,38 +25,38 @@ pub struct Contender {
 /// What robots run.
 pub enum Controller {
     /// The same blob in every mission.
-    Blob(Blob),
+    Blob(Box<Blob>),
     /// In each mission its best circle, at this scale.
-    BestCircle(Circle, f32),
+    BestCircle(f32),
 }
 
 impl Contender {
     /// A blob.
     pub fn blob(name: String, blob: Blob) -> Contender {
-        Contender { name, controller: Controller::Blob(blob) }
+        Contender { name, controller: Controller::Blob(Box::new(blob)) }
     }
 
     /// The best circle of each mission, at this scale or the usual one.
-    pub fn best_circle(scale: Option<f32>) -> Result<Contender, NetworkError> {
-        let controller = Controller::BestCircle(Circle::new()?, scale.unwrap_or(DEFAULT_SCALE));
-        Ok(Contender { name: "circle".into(), controller })
+    pub fn best_circle(scale: Option<f32>) -> Contender {
+        Contender { name: "circle".into(), controller: Controller::BestCircle(scale.unwrap_or(DEFAULT_SCALE)) }
     }
 
     /// World metres per scenario metre.
     pub fn scale(&self) -> f32 {
         match &self.controller {
             Controller::Blob(blob) => blob.scale,
-            Controller::BestCircle(_, scale) => *scale,
+            Controller::BestCircle(scale) => *scale,
         }
     }
 
     /// What it runs in a mission.
-    pub fn in_mission(&self, mission: &MissionRow, scenario: &Scenario) -> Blob {
+    ///
+    /// # Errors
+    /// As of [`circle_blob`].
+    pub fn in_mission(&self, mission: &MissionRow, scenario: &Scenario) -> Result<Blob, SimulationError> {
         match &self.controller {
-            Controller::Blob(blob) => blob.clone(),
-            Controller::BestCircle(circle, scale) => {
-                circle.blob(&scenario.morphogen(), mission.circle_radius_m, *scale)
-            }
+            Controller::Blob(blob) => Ok((**blob).clone()),
+            Controller::BestCircle(scale) => circle_blob(mission.circle_radius_m, &scenario.morphogen(), *scale),
         }
     }
 }

@@ -99,9 +99,9 @@ impl Survey {
                     let config = scenario.configured(conditions.config(contender.scale()));
                     let fits = swarm::check(&scenario, &config).and_then(|()| check_length(&scenario, &config));
                     fits.map_err(|error| SurveyError::Swarm(path.clone(), error))?;
-                    let blob = contender.in_mission(mission, &scenario);
-                    let drives = check_model(&blob, &scenario, conditions.number);
-                    drives.map_err(|error| SurveyError::Model(contender.name.clone(), error))?;
+                    let failed = |error| SurveyError::Model(contender.name.clone(), error);
+                    let blob = contender.in_mission(mission, &scenario).map_err(failed)?;
+                    check_model(&blob, &scenario, conditions.number).map_err(failed)?;
                     Ok(conditions.key(&text, &blob, &config))
                 })
                 .collect::<Result<Vec<String>, SurveyError>>()
@@ -193,8 +193,8 @@ impl Survey {
         let (mission, contender) = (self.mission(place), self.contender(place));
         // Loaded anew, so that the memory that is needed does not grow with the number of missions.
         let scenario = Scenario::load(self.folder.join(&mission.file)).map_err(SurveyError::World)?;
-        let blob = contender.in_mission(mission, &scenario);
         let failed = |error| SurveyError::Model(format!("{} in {}", contender.name, mission.file), error);
+        let blob = contender.in_mission(mission, &scenario).map_err(failed)?;
         let config = scenario.configured(self.conditions.config(blob.scale));
         let setting = Setting::new(&blob, &scenario, &config).map_err(failed)?;
         let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };

@@ -1,11 +1,8 @@
-//! The rules in closed loop, and the circle that they are measured by.
+//! The rules in closed loop.
 
 use super::*;
-use crate::evaluation::{Evaluator, Model, World};
 use crate::simulation::usual_config;
 use firmware_sim::lab::Laboratory;
-use firmware_sim::scenario::Morphogen;
-use grn_core::pattern::Pattern;
 
 fn scenario(name: &str) -> Scenario {
     Scenario::load(format!("{}/../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
@@ -58,26 +55,4 @@ fn the_same_seed_gives_the_same_run_whatever_the_threads() {
     assert_ne!(one.realities[0].cost, one.realities[1].cost, "realities differ");
     stop.store(true, Ordering::Relaxed);
     assert!(try_all(&scenario, &config, 1..=2, &stop).unwrap().is_none());
-}
-
-#[test]
-fn the_circle_has_the_radius_in_every_morphogen() {
-    let usual = scenario("open").morphogen();
-    for (radius, target_width, level) in [(1.5, 1.5, 0.5), (0.8, 1.5, 0.3), (2.5, 1.2, 0.7), (0.3, 0.15, 0.5)] {
-        let morphogen = Morphogen { target_width, level, ..usual };
-        let network = circle(radius, &morphogen).unwrap();
-        let blob = crate::model::deploy::blob(network.clone(), &morphogen, 1.0);
-        let pattern = Pattern::of(&network, level as f32).unwrap();
-        let found = pattern.free_space_radius(&network, &blob.field.field(1.0)).unwrap();
-        assert!((f64::from(found) - radius).abs() < 0.002 * radius, "{radius}: {found}");
-    }
-    // Of many widths: the largest that the morphogen can tell.
-    let network = circle(30.0, &usual).unwrap();
-    assert_eq!(network.genes()[0].theta, 0.0);
-    // In the open it is as good as a circle can be.
-    let world = World::new(scenario("open"));
-    let model = Model::new(&circle(radius(world.scenario().ring()), &usual).unwrap(), usual.level).unwrap();
-    let best = crate::figures::perfect_circle(&world.scenario().ring());
-    let found = Evaluator::new(&world).evaluate(&model);
-    assert!(found.is_feasible() && found.f2 < best + 0.01, "{found:?}, at best {best}");
 }

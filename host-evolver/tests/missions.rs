@@ -192,25 +192,25 @@ fn an_interrupted_survey_keeps_what_is_done() -> Outcome {
     let folder = scratch.path().join("missions");
     // More than can be done before the interruption.
     assert_code(&missions(&folder, &[&["--count", "60"][..], &SMALL].concat()).output()?, 0);
-    let out = scratch.path().join("survey.csv").display().to_string();
+    let out = scratch.path().join("survey.csv");
     let blob = model().display().to_string();
     let mut command = grn();
-    command.arg("survey").arg(&folder).args([
-        &blob,
-        "--circle",
-        "--realities",
-        "1000",
-        "--threads",
-        "1",
-        "--out",
-        &out,
-    ]);
-    let child = command.spawn()?;
-    std::thread::sleep(std::time::Duration::from_secs(4));
+    command
+        .arg("survey")
+        .arg(&folder)
+        .args([&blob, "--circle", "--realities", "20", "--threads", "1", "--out"])
+        .arg(&out);
+    let mut child = command.spawn()?;
+    // The first trial is kept at once.
+    while !out.exists() {
+        assert!(child.try_wait()?.is_none(), "it ended without a trial");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
     let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status()?;
     assert!(killed.success());
     let stopped = child.wait_with_output()?;
     assert_code(&stopped, 130);
     assert!(text(&stopped.stderr).contains("of 120 trials; the same command goes on"), "{}", text(&stopped.stderr));
+    assert!(std::fs::read_to_string(&out)?.lines().count() > 1, "a header and at least one trial");
     Ok(())
 }

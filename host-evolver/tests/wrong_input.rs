@@ -63,7 +63,7 @@ fn wrong_worlds() -> Outcome {
         ),
         ("[17.0, 10.0]", "[17.0]", "15:22: target[0].path[1] = [17.0]: ", &["length 1"]),
         ("[3.0, 10.0]", &many_points, "15:8: target[0].path = 1002 points: ", &["at most 1000"]),
-        ("[[target]]\npath = [[3.0, 10.0], [17.0, 10.0]]\n", "", "target = 0 of them: ", &["1 to 4 [[target]]"]),
+        ("[[target]]\npath = [[3.0, 10.0], [17.0, 10.0]]\n", "", "target = 0 of them: ", &["1 to 10 [[target]]"]),
         (
             "[[wall]]",
             "[[target]]\npath = [[3.0, 10.0], [17.0, 10.0]]\n[[wall]]",

@@ -95,14 +95,14 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let bar = ProgressBar::new(survey.trials() as u64 * arguments.realities).with_style(style);
     bar.inc(taken_over * arguments.realities);
     let begin = Instant::now();
-    let kept = Mutex::new(begin);
+    let kept: Mutex<Option<Instant>> = Mutex::new(None);
     let keep = |rows: &[Option<Row>]| {
         let Some(out) = &arguments.out else { return };
         let Ok(mut kept) = kept.try_lock() else { return };
-        if kept.elapsed() >= KEPT_EVERY {
+        if kept.is_none_or(|last| last.elapsed() >= KEPT_EVERY) {
             // If that cannot be written now, it may be in the end; then it is told.
             let _ = files::write(out, csv(rows));
-            *kept = Instant::now();
+            *kept = Some(Instant::now());
         }
     };
     let listener = Listener { simulated: &|| bar.inc(1), rows: &keep };

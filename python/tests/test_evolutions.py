@@ -94,7 +94,7 @@ def test_ctrl_c_interrupts_and_keeps_what_was_done(channel, tmp_path):
         f"""
         import grn
         try:
-            grn.evolve({str(channel)!r}, out={str(tmp_path / "run")!r}, evaluations=1_000_000, progress=lambda p: print(p, flush=True))
+            grn.evolve({str(channel)!r}, out={str(tmp_path / "run")!r}, evaluations=1_000_000, realities=1, progress=lambda p: print(p, flush=True))
         except KeyboardInterrupt:
             print("interrupted", flush=True)
         """

@@ -92,7 +92,12 @@ def test_an_exception_of_the_callback_stops_the_search(channel, tmp_path):
 def test_ctrl_c_interrupts_and_keeps_what_was_done(channel, tmp_path):
     program = textwrap.dedent(
         f"""
+        import signal
+
         import grn
+
+        # A shell's background jobs, and so whatever tests run in them, ignore Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         try:
             grn.evolve({str(channel)!r}, out={str(tmp_path / "run")!r}, evaluations=1_000_000, realities=1, progress=lambda p: print(p, flush=True))
         except KeyboardInterrupt:

@@ -1,5 +1,7 @@
 //! Random numbers: one independent, portable stream per component of the simulator.
 
+use core::f64::consts::TAU;
+use grn_core::geometry::Vector;
 use rand::Rng;
 use rand_pcg::Pcg32;
 
@@ -54,6 +56,18 @@ impl Stream {
     /// A seed for a run of its own.
     pub fn seed(&mut self) -> u64 {
         (u64::from(self.0.next_u32()) << 32) | u64::from(self.0.next_u32())
+    }
+
+    /// A unit vector, all directions alike.
+    pub fn direction(&mut self) -> Vector<f64> {
+        let (sin, cos) = libm::sincos(self.unit() * TAU);
+        Vector::new(cos, sin)
+    }
+
+    /// A place between two circles around the origin, uniform by area: its distance, and its direction as a unit vector.
+    pub fn in_ring(&mut self, [inner, outer]: [f64; 2]) -> (f64, Vector<f64>) {
+        let radius = (inner * inner + self.unit() * (outer * outer - inner * inner)).sqrt();
+        (radius, self.direction())
     }
 
     /// Uniform in [0, 1), a multiple of 2^-32.

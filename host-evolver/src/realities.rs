@@ -59,7 +59,7 @@ pub struct Reality {
 
 impl Reality {
     /// What came out of the run in reality `number`.
-    pub(crate) fn of(number: u64, simulation: &Simulation) -> Reality {
+    fn of(number: u64, simulation: &Simulation) -> Reality {
         let (metrics, caging) = (&simulation.metrics, &simulation.caging);
         let last = metrics.recoveries.last();
         Reality {

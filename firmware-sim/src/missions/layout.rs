@@ -4,7 +4,7 @@ use grn_core::geometry::{Point, Vector};
 
 /// How an obstacle moves: what a point of it follows, by how much it has turned there, and when it is there.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Course {
+pub(super) struct Moves {
     pub path: Vec<Point<f64>>,
     /// Degrees, counter-clockwise; empty if it does not turn.
     pub turn_deg: Vec<f64>,
@@ -19,16 +19,16 @@ pub(super) enum Shape {
     Disc(Point<f64>, f64),
 }
 
-/// An obstacle and how it moves; an empty course if it stands still.
+/// An obstacle and how it moves; with an empty path it stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Obstacle {
     pub shape: Shape,
-    pub course: Course,
+    pub moves: Moves,
 }
 
 impl Obstacle {
     pub fn fixed(shape: Shape) -> Obstacle {
-        Obstacle { shape, course: Course::default() }
+        Obstacle { shape, moves: Moves::default() }
     }
 
     /// A box that stands still.
@@ -54,17 +54,17 @@ pub(super) struct Layout {
 
 /// Puts a layout into the region of a scenario, which begins at [0, 0]: mirrored or not, turned by quarters of a whole turn, so that no
 /// direction is special.
-pub(super) struct Frame {
+pub(super) struct Orientation {
     low: Point<f64>,
     size: [f64; 2],
     mirrored: bool,
     quarters: usize,
 }
 
-impl Frame {
-    pub fn new(layout: &Layout, mirrored: bool, quarters: usize) -> Frame {
+impl Orientation {
+    pub fn new(layout: &Layout, mirrored: bool, quarters: usize) -> Orientation {
         let [low, high] = layout.region;
-        Frame { low, size: [high.x - low.x, high.y - low.y], mirrored, quarters: quarters % 4 }
+        Orientation { low, size: [high.x - low.x, high.y - low.y], mirrored, quarters: quarters % 4 }
     }
 
     /// The sides of the region.

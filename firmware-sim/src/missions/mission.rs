@@ -2,7 +2,7 @@
 
 use super::class::Class;
 use super::draw::{centimetres, chance, rounded, whole};
-use super::layout::{Course, Frame, Layout, Obstacle, Shape};
+use super::layout::{Layout, Moves, Obstacle, Orientation, Shape};
 use super::obstacles::{Plan, drawn};
 use super::robots::starts;
 use super::sampling::Sampling;
@@ -54,12 +54,12 @@ impl Mission {
         let spacing = centimetres(&mut stream, SPACING);
         let plan = Plan { clearance, convoy: rounded(spacing * (targets - 1) as f64) };
         let (layout, travel) = drawn(class, &plan, &mut stream);
-        let frame = Frame::new(&layout, chance(&mut stream, 0.5), whole(&mut stream, 0, 3));
+        let orientation = Orientation::new(&layout, chance(&mut stream, 0.5), whole(&mut stream, 0, 3));
         // The first target is the foremost.
         let paths = (0..targets).rev().map(|place| part(&layout.way, place as f64 * spacing, travel));
         let paths: Vec<Vec<Point<f64>>> =
-            paths.map(|path| path.into_iter().map(|point| frame.point(point)).collect()).collect();
-        let world = world_text(&name, &layout, &frame, &paths, travel);
+            paths.map(|path| path.into_iter().map(|point| orientation.point(point)).collect()).collect();
+        let world = world_text(&name, &layout, &orientation, &paths, travel);
         let scenario = Scenario::parse(&world)?;
         let ways: Vec<(Point<f64>, Vector<f64>)> =
             paths.iter().map(|path| (path[0], (path[1] - path[0]).direction().unwrap_or(Vector::ZERO))).collect();
@@ -107,8 +107,14 @@ fn part(way: &[Point<f64>], from: f64, length: f64) -> Vec<Point<f64>> {
 }
 
 /// The text of the world, without starts.
-fn world_text(name: &str, layout: &Layout, frame: &Frame, paths: &[Vec<Point<f64>>], travel: f64) -> String {
-    let [width, height] = frame.region();
+fn world_text(
+    name: &str,
+    layout: &Layout,
+    orientation: &Orientation,
+    paths: &[Vec<Point<f64>>],
+    travel: f64,
+) -> String {
+    let [width, height] = orientation.region();
     let snapshots = ((travel / SNAPSHOT_SPACING) as usize + 1).min(MOST_SNAPSHOTS);
     let mut text = format!(
         "name = \"{name}\"\nregion = [{width:?}, {height:?}]\nsnapshots = {snapshots}\n\n\
@@ -120,12 +126,13 @@ fn world_text(name: &str, layout: &Layout, frame: &Frame, paths: &[Vec<Point<f64
     for path in paths {
         let _ = write!(text, "\n[[target]]\npath = {:?}\n", pairs(path));
     }
-    for Obstacle { shape, course: Course { path, turn_deg, times } } in &layout.obstacles {
-        let placed = |points: &[Point<f64>]| pairs(&points.iter().map(|&point| frame.point(point)).collect::<Vec<_>>());
+    for Obstacle { shape, moves: Moves { path, turn_deg, times } } in &layout.obstacles {
+        let placed =
+            |points: &[Point<f64>]| pairs(&points.iter().map(|&point| orientation.point(point)).collect::<Vec<_>>());
         let _ = match shape {
             Shape::Wall(corners) => write!(text, "\n[[wall]]\npolygon = {:?}\n", placed(corners)),
             Shape::Disc(centre, radius) => {
-                let centre = frame.point(*centre);
+                let centre = orientation.point(*centre);
                 write!(text, "\n[[disc]]\ncentre = [{:?}, {:?}]\nradius = {radius:?}\n", centre.x, centre.y)
             }
         };
@@ -133,7 +140,7 @@ fn world_text(name: &str, layout: &Layout, frame: &Frame, paths: &[Vec<Point<f64
             let _ = writeln!(text, "path = {:?}", placed(path));
         }
         if !turn_deg.is_empty() {
-            let turns: Vec<f64> = turn_deg.iter().map(|&degrees| frame.turn(degrees)).collect();
+            let turns: Vec<f64> = turn_deg.iter().map(|&degrees| orientation.turn(degrees)).collect();
             let _ = writeln!(text, "turn_deg = {turns:?}");
         }
         if !times.is_empty() {

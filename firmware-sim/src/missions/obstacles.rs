@@ -2,7 +2,7 @@
 
 use super::class::Class;
 use super::draw::{centimetres, chance, rounded, rounded_up, side, whole};
-use super::layout::{Course, Layout, Obstacle, Shape, block};
+use super::layout::{Layout, Moves, Obstacle, Shape, block};
 use crate::random::Stream;
 use core::f64::consts::FRAC_PI_8;
 use grn_core::geometry::{Point, Vector};
@@ -130,7 +130,7 @@ fn sliding_door(plan: &Plan, west: f64, travel: f64, stream: &mut Stream) -> Vec
         let far = first + side * (HALF_WIDTH - plan.clearance);
         let shape = block([west, first.min(far)], [west + thick, first.max(far)]);
         let path = (0..=strokes).map(|stroke| Vector::new(west, jamb(stroke))).collect();
-        Obstacle { shape, course: Course { path, turn_deg: Vec::new(), times: even_times(strokes) } }
+        Obstacle { shape, moves: Moves { path, turn_deg: Vec::new(), times: even_times(strokes) } }
     };
     vec![leaf(1.0), leaf(-1.0)]
 }
@@ -159,7 +159,7 @@ fn sweeping_bar(plan: &Plan, middle: f64, travel: f64, stream: &mut Stream) -> O
     let turn_deg = (0..=strokes).map(|stroke| if stroke.is_multiple_of(2) { first * turn } else { -first * turn });
     Obstacle {
         shape: block([middle - half, hinge.y - length], [middle + half, hinge.y]),
-        course: Course { path: vec![hinge], turn_deg: turn_deg.collect(), times: even_times(strokes) },
+        moves: Moves { path: vec![hinge], turn_deg: turn_deg.collect(), times: even_times(strokes) },
     }
 }
 
@@ -175,6 +175,6 @@ fn drifting_disc(plan: &Plan, middle: f64, travel: f64, stream: &mut Stream) -> 
     let east = rounded(middle + along / 2.0);
     let places = [[east + slant, far], [east, near], [east - along, near], [east - along - slant, far]];
     let path: Vec<Point<f64>> = places.map(|[x, y]| Vector::new(x, y)).to_vec();
-    let course = Course { path: path.clone(), ..Course::default() };
-    Obstacle { shape: Shape::Disc(path[0], radius), course }
+    let moves = Moves { path: path.clone(), ..Moves::default() };
+    Obstacle { shape: Shape::Disc(path[0], radius), moves }
 }

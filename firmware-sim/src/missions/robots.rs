@@ -3,7 +3,6 @@
 use super::draw::rounded;
 use crate::geometry::{Walls, length_squared};
 use crate::random::Stream;
-use core::f64::consts::TAU;
 use grn_core::geometry::{Point, Vector};
 
 /// From where to where around a target's start, metres.
@@ -28,10 +27,7 @@ pub(super) fn starts(
     let mut misses = 0;
     while places.len() < count {
         let (start, way) = targets[places.len() % targets.len()];
-        // Uniform by area.
-        let radius = (inner * inner + stream.unit() * (outer * outer - inner * inner)).sqrt();
-        let (sin, cos) = libm::sincos(stream.unit() * TAU);
-        let bearing = Vector::new(cos, sin);
+        let (radius, bearing) = stream.in_ring([inner, outer]);
         let behind = if bearing.dot(way) > 0.0 { -bearing } else { bearing };
         let at = start + behind * radius;
         let at = Vector::new(rounded(at.x), rounded(at.y));

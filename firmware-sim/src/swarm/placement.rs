@@ -5,8 +5,7 @@ use crate::config::SwarmConfig;
 use crate::geometry::{Walls, length_squared};
 use crate::random::{Component, Stream};
 use crate::scenario::{Disc, Scenario, Start};
-use core::f64::consts::TAU;
-use grn_core::geometry::{Point, Vector};
+use grn_core::geometry::Point;
 use grn_core::robot::epuck2::BODY_RADIUS;
 use grn_input::InputError;
 
@@ -64,8 +63,8 @@ fn within(world: &Scenario, disc: &Disc, count: usize, at_base: bool, seed: u64)
     while poses.len() < count {
         // Uniform by area.
         let radius = disc.radius * stream.unit().sqrt();
-        let position = disc.centre + turned(stream.unit()) * radius;
-        let heading = turned(stream.unit());
+        let position = disc.centre + stream.direction() * radius;
+        let heading = stream.direction();
         if free(world, &walls, &poses, position, clearance) {
             poses.push(Pose { position, heading });
             misses = 0;
@@ -100,7 +99,7 @@ fn at(world: &Scenario, positions: &[Point<f64>], config: &SwarmConfig) -> Resul
             let value = format!("[{:?}, {:?}]", drawn.x, drawn.y);
             return Err(InputError::new(format!("start.positions[{place}]"), value, way_out));
         }
-        poses.push(Pose { position, heading: turned(stream.unit()) });
+        poses.push(Pose { position, heading: stream.direction() });
     }
     Ok(poses)
 }
@@ -124,12 +123,10 @@ fn scattered(world: &Scenario, count: usize, at_base: bool, seed: u64) -> Option
     let mut misses = 0;
     let mut only_behind = true;
     while poses.len() < count {
-        // Uniform by area.
-        let radius = (inner * inner + stream.unit() * (outer * outer - inner * inner)).sqrt();
-        let bearing = turned(stream.unit());
+        let (radius, bearing) = stream.in_ring([inner, outer]);
         let behind = if only_behind && bearing.dot(way) > 0.0 { -bearing } else { bearing };
         let position = centre + behind * radius;
-        let heading = turned(stream.unit());
+        let heading = stream.direction();
         let walled_off = || at_base && walls.ray(centre, behind, radius).is_some();
         if free(world, &walls, &poses, position, clearance) && !walled_off() {
             poses.push(Pose { position, heading });
@@ -157,20 +154,14 @@ fn scattered(world: &Scenario, count: usize, at_base: bool, seed: u64) -> Option
 pub(super) fn carried(world: &Scenario, walls: &Walls, poses: &[Pose], from: Pose, stream: &mut Stream) -> Pose {
     let [least, most] = CARRIED.map(|share| share * world.ring().d_max);
     for _ in 0..CARRIED_TRIES {
-        let (way, heading) = (turned(stream.unit()), turned(stream.unit()));
+        let (way, heading) = (stream.direction(), stream.direction());
         let distance = least + stream.unit() * (most - least);
         let position = from.position + way * distance;
         if free(world, walls, poses, position, CLEARANCE) && walls.ray(from.position, way, distance).is_none() {
             return Pose { position, heading };
         }
     }
-    Pose { heading: turned(stream.unit()), ..from }
-}
-
-/// The unit vector after this share of a whole turn.
-fn turned(share: f64) -> Vector<f64> {
-    let (sin, cos) = libm::sincos(share * TAU);
-    Vector::new(cos, sin)
+    Pose { heading: stream.direction(), ..from }
 }
 
 fn free(world: &Scenario, walls: &Walls, poses: &[Pose], position: Point<f64>, clearance: f64) -> bool {

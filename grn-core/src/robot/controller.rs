@@ -6,10 +6,9 @@ use super::drive::Drive;
 use super::epuck2::TICKS_PER_SECOND;
 use super::knowledge::{Knowledge, KnownTarget};
 use super::localisation::{Localisation, Pose};
-use super::message::{BROADCAST_PERIOD, Message};
 use super::motion::{Motion, PatternHere};
 use super::percept::{Command, NOMINAL_TICK_US, Percept, PerceptError};
-use super::position::{Millimetres, metres, millimetres};
+use super::position::{Millimetres, metres};
 use crate::blob::{Blob, Identity};
 use crate::dynamics::{Expression, Step};
 use crate::field::{Field, Morphogens};
@@ -171,7 +170,8 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
         let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, map, pace.ticks);
         let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
-        Ok(Command { left, right, broadcast: self.broadcast(percept, here, pace.ticks) })
+        let ticks = [self.clock.tick(), pace.ticks];
+        Ok(Command { left, right, broadcast: self.knowledge.message(self.robot, here, ticks, percept) })
     }
 
     fn wanted_velocity(&mut self, here: Point<S>, percept: &Percept, pace: &Pace<S>) -> Vector<S> {
@@ -214,16 +214,6 @@ impl<S: Scalar, const N: usize> Controller<S, N> {
     fn own_target(&self, percept: &Percept) -> Option<u8> {
         let turn = usize::from(self.robot).checked_rem(percept.targets.len())?;
         percept.targets.get(turn).map(|sighting| sighting.target)
-    }
-
-    fn broadcast(&self, percept: &Percept, here: Point<S>, ticks: u32) -> Option<Message> {
-        let turn = self.clock.tick().wrapping_add(u32::from(self.robot));
-        // Whether one of the ticks that have begun is this robot's.
-        if turn % BROADCAST_PERIOD >= ticks {
-            return None;
-        }
-        let (target, obstacles) = self.knowledge.report(turn / BROADCAST_PERIOD, percept);
-        Some(Message { sender: self.robot, position: millimetres(here), target, obstacles })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::clock::{Pace, ticks_of};
 use super::epuck2::TICKS_PER_SECOND;
-use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, ObstacleReport, TargetReport};
+use super::message::{BROADCAST_PERIOD, MAX_REPORTED_OBSTACLES, Message, ObstacleReport, TargetReport};
 use super::neighbours::{Neighbour, Neighbours};
 use super::obstacles::ObstacleMap;
 use super::percept::{Heard, MAX_TARGETS, Percept, Sighting};
@@ -222,8 +222,19 @@ impl<S: Scalar> Knowledge<S> {
         }
     }
 
+    /// What robot number `sender` at `here` broadcasts, if one of the `ticks` ticks that have begun, of which `now` is the last, is its turn.
+    #[inline]
+    pub fn message(&self, sender: u16, here: Point<S>, [now, ticks]: [u32; 2], percept: &Percept) -> Option<Message> {
+        let turn = now.wrapping_add(u32::from(sender));
+        if turn % BROADCAST_PERIOD >= ticks {
+            return None;
+        }
+        let (target, obstacles) = self.report(turn / BROADCAST_PERIOD, percept);
+        Some(Message { sender, position: millimetres(here), target, obstacles })
+    }
+
     /// What to tell the others: one target in turn, and obstacle points in turn, own sightings first.
-    pub fn report(&self, turn: u32, percept: &Percept) -> (Option<TargetReport>, Vec<ObstacleReport, 4>) {
+    fn report(&self, turn: u32, percept: &Percept) -> (Option<TargetReport>, Vec<ObstacleReport, 4>) {
         let target = nth_in_turn(&self.targets, turn).map(|known| TargetReport {
             target: known.target,
             position: millimetres(known.position),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Ticks between two broadcasts of a robot: a quarter of a second, in which it moves 3 cm. Robots take turns by their
 /// numbers, so that they do not all broadcast in the same tick.
-pub const BROADCAST_PERIOD: u32 = 8;
+pub(super) const BROADCAST_PERIOD: u32 = 8;
 /// The most obstacle points in one message.
 pub const MAX_REPORTED_OBSTACLES: usize = 4;
 

@@ -9,3 +9,4 @@ pub use super::drive::Drive;
 pub use super::knowledge::{Knowledge, KnownTarget};
 pub use super::localisation::{Localisation, Pose};
 pub use super::neighbours::{Neighbour, Neighbours};
+pub use super::position::metres;

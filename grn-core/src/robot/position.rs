@@ -23,7 +23,8 @@ pub(super) fn squared_distance(a: Millimetres, b: Millimetres) -> u32 {
     square(a.x, b.x).saturating_add(square(a.y, b.y))
 }
 
-pub(super) fn metres<S: Scalar>(position: Millimetres) -> Point<S> {
+/// Where that is, metres.
+pub fn metres<S: Scalar>(position: Millimetres) -> Point<S> {
     let metre = |mm: i16| S::from_millionths(i32::from(mm) * 1000);
     Vector::new(metre(position.x), metre(position.y))
 }

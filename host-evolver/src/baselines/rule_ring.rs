@@ -29,9 +29,8 @@ use grn_core::blob::{Blob, Gains};
 use grn_core::field::Kernel;
 use grn_core::geometry::{Point, Vector};
 use grn_core::robot::epuck2::BODY_RADIUS;
-use grn_core::robot::message::BROADCAST_PERIOD;
-use grn_core::robot::parts::{Avoidance, Clock, Drive, Knowledge, KnownTarget, Localisation, Pace, Pose};
-use grn_core::robot::{Command, Message, Millimetres, Percept};
+use grn_core::robot::parts::{Avoidance, Clock, Drive, Knowledge, KnownTarget, Localisation, Pace, Pose, metres};
+use grn_core::robot::{Command, Millimetres, Percept};
 use grn_core::scalar::NumberType;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -119,7 +118,8 @@ impl RuleRing {
         let velocity = self.avoidance.velocity(wanted, &percept.proximity, heading, map, pace.ticks);
         let (left, right) = self.drive.wheels(velocity, heading, &pace);
         self.localisation.drive(left, right);
-        Command { left, right, broadcast: self.broadcast(percept, pace.ticks) }
+        let broadcast = self.knowledge.message(self.robot, self.here, [now, pace.ticks], percept);
+        Command { left, right, broadcast }
     }
 
     /// The velocity that the rules give, metres per second.
@@ -220,18 +220,6 @@ impl RuleRing {
         let along = (way - away * way.dot(away)).direction().unwrap_or(Vector::ZERO);
         along * speed - away * most
     }
-
-    fn broadcast(&self, percept: &Percept, ticks: u32) -> Option<Message> {
-        let turn = self.clock.tick().wrapping_add(u32::from(self.robot));
-        // Whether one of the ticks that have begun is this robot's.
-        if turn % BROADCAST_PERIOD >= ticks {
-            return None;
-        }
-        let (target, obstacles) = self.knowledge.report(turn / BROADCAST_PERIOD, percept);
-        let millimetre = |metres: f32| (metres * 1000.0).clamp(-32_767.0, 32_767.0) as i16;
-        let position = Millimetres { x: millimetre(self.here.x), y: millimetre(self.here.y) };
-        Some(Message { sender: self.robot, position, target, obstacles })
-    }
 }
 
 /// Where a robot is to be, in its bearing from the target.
@@ -240,10 +228,6 @@ struct Place {
     distance: f32,
     /// Whether an obstacle is between them that the robot passes on its outer side.
     is_outside: bool,
-}
-
-fn metres(Millimetres { x, y }: Millimetres) -> Point<f32> {
-    Vector::new(f32::from(x), f32::from(y)) * 0.001
 }
 
 impl Brain for RuleRing {
@@ -269,7 +253,7 @@ pub fn radius(Ring { d_min, d_max, .. }: Ring) -> f64 {
 }
 
 /// Runs the rules on every robot, in `f32`, as [`simulate`](crate::simulation::simulate) runs a blob. The run is measured
-/// against the blob of the [`circle`] of that radius, whose identity it bears.
+/// against the [blob of the circle](circle_blob) of that radius, whose identity it bears.
 ///
 /// # Errors
 /// [`SimulationError`]; `Ok(None)` if `watch` stopped it.

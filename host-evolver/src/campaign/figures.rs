@@ -83,13 +83,14 @@ pub(super) fn draw(
     Ok(pictures.contents)
 }
 
-/// Draws the first of the realities that knees are simulated in; one that cannot drive a robot has none.
+/// Draws the first of the realities that knees are simulated in.
 fn swarm(pictures: &mut Pictures, name: &str, blob: &Blob, world: &Scenario, simulate: &Simulate) {
-    let config = reality(&simulate.config(), 1);
+    let config = reality(&world.configured(simulate.config()), 1);
     let mut recorder = record::recorder(world, &config);
-    let watch = |_| ControlFlow::Continue(());
-    if let Ok(Some(simulation)) = simulate_one(blob, world, config, simulate.number, &mut recorder, watch) {
-        pictures.add(name, figures::run(&simulation, recorder.trace(), world, blob));
+    match simulate_one(blob, world, config, simulate.number, &mut recorder, |_| ControlFlow::Continue(())) {
+        Ok(Some(simulation)) => pictures.add(name, figures::run(&simulation, recorder.trace(), world, blob)),
+        Ok(None) => {}
+        Err(error) => pictures.not_drawn.push(format!("{name} is not drawn: {error}")),
     }
 }
 

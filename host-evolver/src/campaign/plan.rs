@@ -62,10 +62,14 @@ impl Plan {
     /// # Errors
     /// What is wrong, with the world's name.
     pub fn check_simulations(&self) -> Result<(), InputError> {
-        let Some(simulate) = &self.simulate else { return Ok(()) };
+        self.simulate.as_ref().map_or(Ok(()), |simulate| simulate.check(self.worlds_simulated_in()))
+    }
+
+    /// The worlds of [`simulated_in`](Self::simulated_in), of all scenarios.
+    pub fn worlds_simulated_in(&self) -> impl Iterator<Item = &Scenario> {
         let own = self.scenarios.iter().flat_map(|planned| &planned.worlds);
         let others = self.transfers.iter().filter(|planned| !planned.random).flat_map(|planned| &planned.worlds);
-        simulate.check(own.chain(others))
+        own.chain(others)
     }
 
     /// Runs of all methods in one scenario.

@@ -112,8 +112,11 @@ impl PlanFile {
         let models = models.into_iter().enumerate().map(|(place, table)| planned_model(place, table, folder));
         let models = models.collect::<Result<Vec<_>, _>>()?;
         let transfers = planned_transfers(transfers, &scenarios, &vary, folder)?;
-        let simulate = simulate.map(|table| table.checked(folder)).transpose()?;
-        let plan = Plan { name: self.name, seeds, scenarios, methods, models, transfers, simulate };
+        let mut plan = Plan { name: self.name, seeds, scenarios, methods, models, transfers, simulate: None };
+        if let Some(table) = simulate {
+            table.check_set(plan.worlds_simulated_in())?;
+            plan.simulate = Some(table.checked(folder)?);
+        }
         plan.check_simulations()?;
         check_work(&plan)?;
         Ok(plan)

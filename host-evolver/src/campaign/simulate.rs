@@ -96,6 +96,18 @@ pub(super) struct SimulateTable {
 }
 
 impl SimulateTable {
+    /// Refuses values that would have no effect in one of these worlds, because it says itself what swarm it is meant for.
+    pub(super) fn check_set<'s>(&self, mut worlds: impl Iterator<Item = &'s Scenario>) -> Result<(), InputError> {
+        worlds.try_for_each(|world| match world.settled(&self.set) {
+            Some(setting) => {
+                let expected =
+                    format!("{} says in [swarm] itself what swarm it is meant for; leave this out", world.name());
+                Err(InputError::new("simulate.set", format!("{setting:?}"), expected))
+            }
+            None => Ok(()),
+        })
+    }
+
     /// What it says; a laboratory's file is relative to `folder`. Scale and speed are checked with the worlds.
     pub(super) fn checked(self, folder: &Path) -> Result<Simulate, InputError> {
         let usual = Simulate::default();

@@ -74,6 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 fn planned(arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = Plan::load(&arguments.file)?;
     plan.simulate = arguments.simulate(plan.simulate.take())?;
+    plan.worlds_simulated_in().try_for_each(|world| conditions::check_set(&arguments.set, world, world.name()))?;
     plan.check_simulations()?;
     Ok(plan)
 }

@@ -30,15 +30,19 @@ impl Conditions {
         paths.try_for_each(|path| self.check_world(&path, &Scenario::load(&path)?))
     }
 
-    /// Refuses values that would have no effect in this world, because it says itself what swarm it is meant for.
+    /// [`check_set`] for the world of this file.
     pub fn check_world(&self, path: &Path, world: &Scenario) -> Result<(), Failure> {
-        match world.settled(&self.set) {
-            Some(assignment) => Err(Failure::Input(format!(
-                "--set {assignment}: {} says in [swarm] itself what swarm it is meant for; leave --set out, or change [swarm] there",
-                path.display()
-            ))),
-            None => Ok(()),
-        }
+        check_set(&self.set, world, &path.display().to_string())
+    }
+}
+
+/// Refuses values that would have no effect in this world, because it says itself what swarm it is meant for.
+pub fn check_set(set: &[String], world: &Scenario, name: &str) -> Result<(), Failure> {
+    match world.settled(set) {
+        Some(assignment) => Err(Failure::Input(format!(
+            "--set {assignment}: {name} says in [swarm] itself what swarm it is meant for; leave --set out, or change [swarm] there"
+        ))),
+        None => Ok(()),
     }
 }
 

@@ -11,7 +11,6 @@ use crate::simulation::SimulationError;
 #[cfg(unix)]
 use firmware_sim::link::qemu::EmulatorError;
 use grn_core::blob::BlobError;
-use grn_core::network::NetworkError;
 use grn_core::robot::slots::SlotError;
 use grn_figures::{FigureError, PngError};
 use grn_input::InputError;
@@ -166,8 +165,6 @@ always! {
     SlotError => Input,
     // What is drawn comes from models and worlds that were checked.
     FigureError => Program,
-    // Networks are made from trees that were checked, or are our own.
-    NetworkError => Program,
     PngError => Program,
 }
 

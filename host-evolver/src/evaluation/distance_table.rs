@@ -29,7 +29,7 @@ impl Sigmoid {
 
 /// A sum of sigmoids of a distance.
 #[derive(Clone, Debug)]
-pub(super) struct DistanceTable {
+pub(crate) struct DistanceTable {
     sigmoids: Vec<Sigmoid>,
     per_spacing: f64,
     /// At each knot of squared distance the value and a sixth of the second difference.
@@ -41,7 +41,7 @@ impl DistanceTable {
     pub(super) fn new(sigmoids: Vec<Sigmoid>) -> Self {
         let steepest = sigmoids.iter().fold(1e-3, |most, sigmoid| sigmoid.slope.abs().max(most));
         let spacing = (SPACING_TIMES_STEEPNESS / steepest).min(LARGEST_SPACING);
-        let reach = sigmoids.iter().map(|sigmoid| sigmoid.threshold + REACH / sigmoid.slope.abs()).fold(0.0, f64::max);
+        let reach = reach(&sigmoids);
         let count = (reach * reach / spacing).ceil() as usize + 2;
         let mut profile = DistanceTable { sigmoids, per_spacing: 1.0 / spacing, knots: Vec::new() };
         let value = |place: usize| profile.exact(place as f64 * spacing);
@@ -51,9 +51,14 @@ impl DistanceTable {
         profile
     }
 
+    /// From this distance on it has reached its limit, metres.
+    pub(crate) fn reach(&self) -> f64 {
+        reach(&self.sigmoids)
+    }
+
     /// The sum at the root of `squared_distance`, by cubic interpolation.
     #[inline]
-    pub(super) fn at(&self, squared_distance: f64) -> f64 {
+    pub(crate) fn at(&self, squared_distance: f64) -> f64 {
         if squared_distance < NEAR * NEAR {
             return self.exact(squared_distance);
         }
@@ -90,6 +95,10 @@ impl DistanceTable {
         let distance = libm::sqrt(squared_distance);
         self.sigmoids.iter().map(|sigmoid| sigmoid.at(distance)).sum()
     }
+}
+
+fn reach(sigmoids: &[Sigmoid]) -> f64 {
+    sigmoids.iter().map(|sigmoid| sigmoid.threshold + REACH / sigmoid.slope.abs()).fold(0.0, f64::max)
 }
 
 /// The cubic through four knots, at the share `t` of the way from the second to the third.

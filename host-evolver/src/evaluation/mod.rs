@@ -38,5 +38,6 @@ pub use evaluator::Evaluator;
 pub use fitness::{CANDIDATES_PER_RING, Evaluation, TargetDistance};
 pub use lattice::LATTICE_STEP;
 pub use model::Model;
+pub(crate) use terms::Terms;
 pub use tracer::{Contours, Tracer};
 pub use world::{Moment, Snapshot, World};

@@ -8,17 +8,17 @@ const ROUNDING: f64 = 1e-6;
 
 /// The terms of f2 as functions of a distance.
 #[derive(Clone, Debug)]
-pub(super) struct Terms {
+pub(crate) struct Terms {
     /// No snapshot's f2 is below: the terms of a point midway between d_min and d_max from every target, 2 sig(-(d_max - d_min) / 2, 0, k).
     pub(super) least: f64,
     /// sig(d, d_max, k1) + sig(d_min, d, k2).
-    pub(super) target: DistanceTable,
+    pub(crate) target: DistanceTable,
     /// sig(d_obstacle, d, k3).
-    pub(super) obstacle: DistanceTable,
+    pub(crate) obstacle: DistanceTable,
 }
 
 impl Terms {
-    pub(super) fn of(ring: Ring) -> Terms {
+    pub(crate) fn of(ring: Ring) -> Terms {
         let rising = |threshold: f64| Sigmoid { threshold, slope: ring.steepness };
         let falling = |threshold: f64| Sigmoid { threshold, slope: -ring.steepness };
         Terms {

@@ -5,20 +5,16 @@
 //! the point with the least error. Both keep [`SMALLEST_CLEARANCE`] from walls, and no wall is inside what they draw. f2 takes points
 //! at equal arc length, so that of a pattern is the mean of the error along it. The difference is what there is to gain.
 
-use crate::evaluation::{CANDIDATES_PER_RING, SMALLEST_CLEARANCE};
+use crate::evaluation::{CANDIDATES_PER_RING, SMALLEST_CLEARANCE, Terms};
 use core::f64::consts::TAU;
 use firmware_sim::geometry::Walls;
-use firmware_sim::scenario::{Ring, Scenario};
+use firmware_sim::scenario::Scenario;
 use grn_core::geometry::{Point, Vector};
 
 /// Radii that are tried are so far apart, metres.
 const STEP: f64 = 0.02;
 /// The largest one, beyond the ring's d_max, metres.
 const BEYOND: f64 = 0.5;
-/// Squared distances for which a term is tabulated are so far apart, square metres: interpolated terms are off by less than 1e-5.
-const TABLE_STEP: f64 = 0.002;
-/// At this many multiples of 1 / k beyond its threshold a sigmoid is 0 or 1.
-const SATURATED: f64 = 20.0;
 /// For rounding: walls that are drawn at the clearance itself do not count as too near.
 const SLACK: f64 = 1e-9;
 
@@ -52,7 +48,7 @@ impl Difficulty {
                 if room == 0 {
                     return None;
                 }
-                let near = moment.around(target, radius(radii) + terms.obstacle.farthest);
+                let near = moment.around(target, radius(radii) + terms.obstacle.reach());
                 let mut ring = Vec::with_capacity(CANDIDATES_PER_RING);
                 for ray in 0..CANDIDATES_PER_RING {
                     let (sin, cos) = libm::sincos(TAU * ray as f64 / CANDIDATES_PER_RING as f64);
@@ -129,46 +125,6 @@ impl Moment {
             whole += length;
         }
         sum / whole
-    }
-}
-
-/// The terms of f2 (model page, section 4), tabulated over squared distances.
-struct Terms {
-    target: Table,
-    obstacle: Table,
-}
-
-impl Terms {
-    fn of(ring: Ring) -> Terms {
-        let Ring { d_min, d_max, d_obstacle, steepness } = ring;
-        let sigmoid = |beyond: f64| 1.0 / (1.0 + libm::exp(-steepness * beyond));
-        let saturated = SATURATED / steepness;
-        Terms {
-            target: Table::of(d_max + saturated, |d| sigmoid(d - d_max) + sigmoid(d_min - d)),
-            obstacle: Table::of(d_obstacle + saturated, |d| sigmoid(d_obstacle - d)),
-        }
-    }
-}
-
-/// A function of a distance that is constant from the last one in the table on.
-struct Table {
-    /// Beyond this it is constant, metres.
-    farthest: f64,
-    values: Vec<f64>,
-}
-
-impl Table {
-    fn of(farthest: f64, function: impl Fn(f64) -> f64) -> Table {
-        let entries = (farthest * farthest / TABLE_STEP) as usize + 2;
-        let values = (0..entries).map(|entry| function((entry as f64 * TABLE_STEP).sqrt())).collect();
-        Table { farthest, values }
-    }
-
-    fn at(&self, squared: f64) -> f64 {
-        let place = squared * (1.0 / TABLE_STEP);
-        let entry = (place as usize).min(self.values.len() - 2);
-        let share = (place - entry as f64).min(1.0);
-        self.values[entry] + (self.values[entry + 1] - self.values[entry]) * share
     }
 }
 

@@ -90,6 +90,7 @@ mod tests {
     use super::super::row::tests::mission;
     use super::super::row::thirds;
     use super::*;
+    use crate::realities::Robustness;
 
     #[test]
     fn missions_are_counted_by_class_and_by_third() {
@@ -102,7 +103,8 @@ mod tests {
             let number = place / 2;
             let caged = if place.is_multiple_of(2) { number.is_multiple_of(2) } else { number < 6 };
             let mission = &missions[place / 2];
-            let mut row = Row::of(mission, thirds[place / 2], "", &[], 7, "");
+            let nothing = Robustness { realities: Vec::new() };
+            let mut row = Row::of(mission, thirds[place / 2], "", &nothing, 7, "");
             (row.caged, row.works, row.realities, row.cost) = (caged, usize::from(caged), 1, place as f64);
             row
         };

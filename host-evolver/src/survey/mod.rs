@@ -3,8 +3,8 @@
 //! How a survey goes:
 //!
 //! 1. [`Survey::new`] loads every mission once and finds out whether its swarm can be set up for every model.
-//! 2. A trial is one model in one mission, in all its realities; [`Row`] is what came out. Trials run on several threads, each whole
-//!    on one of them, and a row depends on its trial alone.
+//! 2. A trial is one model in one mission, in all its realities; [`Row`] is what came out. Trials and their realities run on several threads,
+//!    and a row depends on its trial alone.
 //! 3. Rows that are there already, of the same trial, are taken over: its key tells.
 //! 4. [`Group`] counts in how many missions of a class, or of a third of the difficulties, a model caged the targets.
 
@@ -17,14 +17,13 @@ pub use group::{Group, Tally, groups};
 pub use row::{Row, Third, thirds};
 
 use crate::missions::MissionRow;
-use crate::realities::{self, Reality};
-use crate::simulation::{Setting, SimulationError, check_length, check_model, simulate_in};
+use crate::realities;
+use crate::simulation::{SimulationError, check_length, check_model};
 use firmware_sim::scenario::{Course, InputError, Scenario};
 use firmware_sim::swarm::{self, arrival_tick};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
@@ -189,23 +188,16 @@ impl Survey {
         &self.contenders[place % self.contenders.len()]
     }
 
-    fn trial(&self, place: usize, stop: &AtomicBool, done: &dyn Fn()) -> Result<Option<Row>, SurveyError> {
+    fn trial(&self, place: usize, stop: &AtomicBool, done: &(dyn Fn() + Sync)) -> Result<Option<Row>, SurveyError> {
         let (mission, contender) = (self.mission(place), self.contender(place));
         // Loaded anew, so that the memory that is needed does not grow with the number of missions.
         let scenario = Scenario::load(self.folder.join(&mission.file)).map_err(SurveyError::World)?;
         let failed = |error| SurveyError::Model(format!("{} in {}", contender.name, mission.file), error);
         let blob = contender.in_mission(mission, &scenario).map_err(failed)?;
         let config = scenario.configured(self.conditions.config(blob.scale));
-        let setting = Setting::new(&blob, &scenario, &config).map_err(failed)?;
-        let watch = |_| if stop.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
-        let mut came_out = Vec::new();
-        for number in 1..=self.conditions.realities {
-            let reality = realities::reality(&config, number);
-            let simulation = simulate_in(&setting, reality, self.conditions.number, &mut (), watch).map_err(failed)?;
-            let Some(simulation) = simulation else { return Ok(None) };
-            came_out.push(Reality::of(number, &simulation));
-            done();
-        }
+        let numbers = 1..=self.conditions.realities;
+        let tried = realities::try_all(&blob, &scenario, &config, self.conditions.number, numbers, stop, done);
+        let Some(came_out) = tried.map_err(failed)? else { return Ok(None) };
         let course = Course::of(&scenario.scaled(config.scale), &config);
         let ticks = arrival_tick(&course) * config.lab.robots.count as u64 * self.conditions.realities;
         let third = self.thirds[place / self.contenders.len()];

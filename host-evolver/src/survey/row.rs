@@ -1,7 +1,7 @@
 //! What came out of a trial.
 
 use crate::missions::MissionRow;
-use crate::realities::Reality;
+use crate::realities::Robustness;
 use crate::simulation::verdict::ENOUGH_CAGED;
 use serde::{Deserialize, Serialize};
 
@@ -88,13 +88,11 @@ impl Row {
         mission: &MissionRow,
         third: Third,
         model: &str,
-        realities: &[Reality],
+        came_out: &Robustness,
         robot_ticks: u64,
         key: &str,
     ) -> Row {
-        let mean =
-            |measure: fn(&Reality) -> f64| realities.iter().map(measure).sum::<f64>() / realities.len().max(1) as f64;
-        let caged_share = mean(|reality| reality.caged_share);
+        let caged_share = came_out.mean(|reality| reality.caged_share);
         Row {
             mission: mission.file.clone(),
             class: mission.class.clone(),
@@ -105,13 +103,13 @@ impl Row {
             model: model.to_owned(),
             caged: caged_share >= ENOUGH_CAGED,
             caged_share,
-            least_caged_share: realities.iter().map(|reality| reality.caged_share).fold(1.0, f64::min),
-            works: realities.iter().filter(|reality| reality.works).count(),
-            realities: realities.len(),
-            cost: mean(|reality| reality.cost),
-            in_band_share: mean(|reality| reality.in_band_share),
-            contact_share: mean(|reality| reality.contact_share),
-            lost_share: mean(|reality| reality.lost_share),
+            least_caged_share: came_out.realities.iter().map(|reality| reality.caged_share).fold(1.0, f64::min),
+            works: came_out.works(),
+            realities: came_out.realities.len(),
+            cost: came_out.mean(|reality| reality.cost),
+            in_band_share: came_out.mean(|reality| reality.in_band_share),
+            contact_share: came_out.mean(|reality| reality.contact_share),
+            lost_share: came_out.mean(|reality| reality.lost_share),
             robot_ticks,
             key: key.to_owned(),
         }

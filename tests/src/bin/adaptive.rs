@@ -3,7 +3,7 @@
 //! Arguments: the folder of `campaigns/generalise.toml`, then those of the campaigns that compare methods, one for each
 //! laboratory.
 
-use grn_tests::reproduction::adaptive::{AdaptiveCampaigns, adaptive_report, picture};
+use grn_tests::reproduction::adaptive::{AdaptiveCampaigns, adaptive_report, picture, scenarios};
 use host_evolver::campaign::{Campaign, Tables};
 use host_evolver::files;
 use std::error::Error;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 const TABLES: [&str; 4] = ["results.csv", "summary.csv", "comparisons.csv", "simulation-summary.csv"];
 const OF_GENERALISE: [&str; 2] = ["results.csv", "simulation-summary.csv"];
-/// Methods whose swarms are shown, by the names of their folders.
+/// The folder of the method whose swarms are shown.
 const SHOWN: &str = "closed-loop";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -42,9 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn copy_swarms(folder: &Path, keep: &Path, laboratory: &str, tables: &Tables) -> Result<(), Box<dyn Error>> {
-    let mut scenarios: Vec<&str> = tables.summaries.iter().map(|row| row.scenario.as_str()).collect();
-    scenarios.dedup();
-    for scenario in scenarios {
+    for scenario in scenarios(tables) {
         let from = folder.join("typical").join(scenario).join(SHOWN).join("trace.svg");
         files::write(&keep.join(picture(laboratory, scenario, SHOWN)), std::fs::read(from)?)?;
     }

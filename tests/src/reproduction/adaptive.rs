@@ -72,7 +72,8 @@ struct Wanted {
     figures: String,
 }
 
-fn scenarios(tables: &Tables) -> Vec<&str> {
+/// The scenarios of a campaign, in its order.
+pub fn scenarios(tables: &Tables) -> Vec<&str> {
     let mut seen = BTreeSet::new();
     tables.summaries.iter().map(|row| row.scenario.as_str()).filter(|name| seen.insert(*name)).collect()
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::robot::epuck2::{AXLE, METRES_PER_STEP};
+use crate::robot::message::Message;
 use crate::robot::percept::HEADING_UNIT;
 use crate::robot::{Fix, Heard, Millimetres, Sighting};
 use crate::scalar::Q8_24;
